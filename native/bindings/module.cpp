@@ -234,6 +234,8 @@ py::dict to_dict(const lsgp::SeamlessReport& report) {
   out["flat_cones"] = to_array(report.flat_cones);
   out["merged_cones"] = to_array(report.merged_cones);
   out["feature_share"] = report.feature_share;
+  out["creases"] = to_array(report.creases.data(), {static_cast<py::ssize_t>(report.creases.size() / 2), 2});
+  out["is_crease_aligned"] = to_array(report.is_crease_aligned).attr("astype")("bool");
   out["relaxed_cones"] = to_array(report.relaxed_cones);
   return out;
 }

@@ -76,6 +76,7 @@ class SeamlessReport(EqualByContent, ShortRepr):
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
     feature_share: with `Options.straighten`, the share of the length of the creases of hard surfaces that runs along
         the lattice exactly, as stored in float32; None without creases.
+    creases: (c, 2) int32, those creases, vertex pairs. is_crease_aligned: (c,) bool, whether each runs there.
     """
 
     rotation_order: int
@@ -93,6 +94,8 @@ class SeamlessReport(EqualByContent, ShortRepr):
     merged_cones: IndexArray
     relaxed_cones: IndexArray
     feature_share: float | None = None
+    creases: IndexArray = field(default_factory=lambda: np.empty((0, 2), np.int32))
+    is_crease_aligned: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, np.bool_))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

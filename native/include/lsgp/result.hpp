@@ -55,6 +55,8 @@ struct SeamlessReport {
   // With Options::straighten: share of the length of the creases of hard surfaces that runs along the lattice exactly,
   // as stored in float32; none without creases.
   std::optional<double> feature_share;
+  std::vector<Index> creases;           // those creases, pairs of vertices
+  std::vector<char> is_crease_aligned;  // of each of them: whether it runs there
 };
 
 // Why a marked feature does not run straight along u or v.

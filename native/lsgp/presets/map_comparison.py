@@ -7,7 +7,9 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..base.arguments import FloatArray
 from ..base.progress import Progress
 from ..errors import InputError
 from ..lattice import island_boxes
@@ -15,6 +17,7 @@ from ..layouts.layout_search import Turned
 from ..layouts.packing import pack_islands, packer_name, turns_of
 from ..results import Result
 from ..triangles import uv_area
+from .components import Components
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -53,6 +56,9 @@ _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 _MOST_FEATURES = 0.95
 _MANY_FEATURES = 0.9
+# Shares of features that are worth as much as L2 stretch of 1, and as tiles twice as large.
+_FEATURES_FOR_STRETCH = 2.5
+_FEATURES_FOR_TILES = 0.25
 
 
 def may_replace_map(
@@ -179,6 +185,40 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
         and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
         and runs_along_features(along)
     )
+
+
+def worth_along_features(result: Result) -> float:
+    """By which seamless maps are compared: features along the lattice, little stretch, and large tiles."""
+    return (
+        feature_share(result)
+        - _FEATURES_FOR_STRETCH * result.distortion.l2_stretch
+        + _FEATURES_FOR_TILES * np.log2(result.seamless.tile_size)
+    )
+
+
+def gains_features(components: Components, along: Result, usual: Result) -> NDArray[np.bool_]:
+    """On which components the map through cones for features may replace the usual one, (c,), by the same measures."""
+    shares, other_shares = (_feature_shares(components, result) for result in (along, usual))
+    stretches, other_stretches = (components.stretches(result) for result in (along, usual))
+    return (
+        (shares >= np.maximum(other_shares, _LEAST_FEATURES))
+        & (components.solved(along) == components.solved(usual))
+        & (components.defects(along) <= components.defects(usual))
+        & (stretches <= _MOST_L2_FOR_FEATURES * other_stretches)
+    )
+
+
+def _feature_shares(components: Components, result: Result) -> FloatArray:
+    """The `feature_share` of each component, 0 without features."""
+    report = result.features
+    if report is not None:
+        every = components.lengths(components.surface.features)
+        paths = [np.stack([one.path[:-1], one.path[1:]], axis=1) for one in report.released]
+        off = components.lengths(np.concatenate([np.empty((0, 2), np.int32), *paths]))
+    else:
+        every = components.lengths(result.seamless.creases)
+        off = components.lengths(result.seamless.creases[~result.seamless.is_crease_aligned])
+    return np.where(every > 0, 1 - off / np.where(every > 0, every, 1), 0.0)
 
 
 def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:

@@ -21,7 +21,8 @@ from ..base.short_repr import ShortRepr
 from ..errors import Elements, Finding, InputError, SolverError
 from ..ledger import surface_of_triangles
 from ..options import Options, Seamless
-from ..presets.auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, follows_features, or_none
+from ..presets.completed_cones import CompletedCones, GivenCones, complete_cones, or_none
+from ..presets.cone_choices import feature_cones, follows_features
 from ..presets.map_comparison import feature_share, releases_many_features, runs_along_features
 from ..results import Result
 from ..stitching import is_collapsed

@@ -28,16 +28,14 @@ from ..options import Options
 from ..presets.auto_unwrap import (
     PACKING,
     PLACING,
-    CompletedCones,
     CreaseChoices,
-    GivenCones,
     Solvers,
     best_at_creases,
     best_division,
-    best_map,
     crease_choices,
-    possible_cones,
 )
+from ..presets.completed_cones import CompletedCones, GivenCones
+from ..presets.cone_choices import best_map, possible_cones
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area

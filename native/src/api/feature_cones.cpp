@@ -16,9 +16,12 @@ namespace lsgp {
 
 namespace {
 
+// Those of components that are closed, or end at features.
 struct SurfaceFeatures {
-  Array<Index> edges;         // as the caller's vertices
-  PerVertex<char> is_border;  // (n)
+  Array<Index> edges;            // as the caller's vertices
+  PerVertex<char> is_border;     // (n)
+  PerTriangle<Index> component;  // (m) with features, numbered from 0; none without
+  std::size_t component_count = 0;
 };
 
 // Whether all boundaries are features, so that the angles along them are known.
@@ -29,9 +32,11 @@ bool is_enclosed(const HalfedgeMesh& mesh, const PerHalfedge<char>& feature) {
   return true;
 }
 
-// Those of components that are closed, or end at features.
-SurfaceFeatures features_of(const Work& work, bool with_creases, std::vector<Finding>& findings) {
+SurfaceFeatures features_of(const Surface& surface, bool with_creases, std::vector<Finding>& findings) {
+  const Work work = prepare({surface, {}, Options{}}, findings);
   SurfaceFeatures out;
+  out.is_border.assign(surface.positions.rows(), 0);
+  out.component.assign(surface.triangles.rows(), none);
   for_each_component(work.topology.components, findings, [&](std::size_t i) {
     const Component& component = work.topology.components[i];
     const HalfedgeMesh& mesh = component.mesh;
@@ -39,15 +44,16 @@ SurfaceFeatures features_of(const Work& work, bool with_creases, std::vector<Fin
     const Geometry geometry = require_geometry(component, findings);
     const PerHalfedge<char> feature = features_to_align({mesh, geometry}, with_creases && mesh.closed());
     if (!is_enclosed(mesh, feature)) return;
+    const std::size_t before = out.edges.size();
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (feature[h] == no_feature || mesh.twin[h] > h) continue;
       const Index tail = component.source_vertex[mesh.origin(h)], head = component.source_vertex[mesh.target(h)];
       out.edges.insert(out.edges.end(), {tail, head});
-      if (mesh.twin[h] != none) continue;
-      const auto least_size = static_cast<std::size_t>(std::max(tail, head)) + 1;
-      out.is_border.resize(std::max(out.is_border.size(), least_size), 0);
-      out.is_border[tail] = out.is_border[head] = 1;
+      if (mesh.twin[h] == none) out.is_border[tail] = out.is_border[head] = 1;
     }
+    if (out.edges.size() == before) return;
+    for (const Index f : component.source_triangle) out.component[f] = static_cast<Index>(out.component_count);
+    ++out.component_count;
   });
   return out;
 }
@@ -58,9 +64,8 @@ Cones feature_cones(const Surface& surface, bool with_creases, const Progress& p
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   std::vector<Finding> findings;
-  SurfaceFeatures features = features_of(prepare({surface, {}, Options{}}, findings), with_creases, findings);
+  const SurfaceFeatures features = features_of(surface, with_creases, findings);
   const Array<Index>& edges = features.edges;
-  features.is_border.resize(static_cast<std::size_t>(surface.positions.rows()), 0);
   Cones out;
   if (edges.empty()) return out;
   Surface opened = surface;
@@ -69,26 +74,34 @@ Cones feature_cones(const Surface& surface, bool with_creases, const Progress& p
   opened.borders.conservativeResize(before + count, 2);
   for (Eigen::Index i = 0; i < count; ++i) opened.borders.row(before + i) << edges[2 * i], edges[2 * i + 1];
   const Work patches = prepare({opened, {}, Options{}}, findings);
-  std::map<Index, Index> angle;  // in quarter turns
-  bool is_possible = true;
+  Array<std::map<Index, Index>> angles(features.component_count);  // by component, in quarter turns
+  Array<char> is_possible(features.component_count, 1);
   for_each_component(patches.topology.components, findings, monitor, [&](std::size_t i) {
     const Component& patch = patches.topology.components[i];
-    if (!patch.orientable || patch.mesh.closed()) return;
+    const Index component = features.component[patch.source_triangle.front()];
+    if (component == none || !patch.orientable || patch.mesh.closed()) return;
     const Geometry geometry = require_geometry(patch, findings);
     const std::optional<PatchAngles> found = round_patch({patch.mesh, geometry});
-    is_possible = is_possible && found;
-    if (!found) return;
+    if (!found) {
+      is_possible[component] = 0;
+      return;
+    }
+    std::map<Index, Index>& angle = angles[component];
     for (Index v = 0; v < patch.mesh.vertex_count(); ++v) {
       if (found->at_border[v] > 0) angle[patch.source_vertex[v]] += found->at_border[v];
     }
     for (const auto& [v, curvature] : found->curvature) angle[patch.source_vertex[v]] = 4 - curvature;
   });
   monitor.advance(1);
-  if (!is_possible) return out;
-  for (const auto& [v, quarters] : angle) {
-    if (quarters == (features.is_border[v] ? 2 : 4)) continue;
-    out.vertices.push_back(v);
-    out.angles.emplace_back(quarters * M_PI / 2);
+  PerVertex<char> is_cone(surface.positions.rows(), 0);  // those at which components touch have one angle
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    if (!is_possible[i]) continue;
+    for (const auto& [v, quarters] : angles[i]) {
+      if (is_cone[v] || quarters == (features.is_border[v] ? 2 : 4)) continue;
+      is_cone[v] = 1;
+      out.vertices.push_back(v);
+      out.angles.emplace_back(quarters * M_PI / 2);
+    }
   }
   return out;
 } catch (const Error& error) {

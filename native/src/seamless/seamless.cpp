@@ -81,8 +81,8 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
   for (std::size_t i = 0; i < components.size(); ++i) *components[i].map = std::move(maps[i]);
 }
 
-// The features of hard surfaces, and which of them run exactly along the axes.
-class LatticeFeatures {
+// The creases of hard surfaces, and which of them run exactly along the axes.
+class LatticeCreases {
  public:
   void add(const Component& component, const CutSurface& surface, const Eigen::VectorXcd& position) {
     const HalfedgeMesh& mesh = component.mesh;
@@ -92,36 +92,38 @@ class LatticeFeatures {
       const Complex edge = as_stored(position[surface.cut_mesh.copy_of_corner[next(h)]]) -
                            as_stored(position[surface.cut_mesh.copy_of_corner[h]]);
       const double length = surface.geometry.length[h];
+      const std::array<Index, 2> ends{component.source_vertex[mesh.origin(h)], component.source_vertex[mesh.target(h)]};
+      const bool is_aligned = is_along_axis(edge);
+      edges_.insert(edges_.end(), ends.begin(), ends.end());
+      is_aligned_.push_back(is_aligned);
       all_ += length;
-      if (is_along_axis(edge)) continue;
+      if (is_aligned) continue;
       off_ += length;
       if (mesh.has_features() && mesh.feature[h]) continue;  // which are reported with all others that are marked
       most_ = std::max(most_, std::abs(std::remainder(std::arg(edge), M_PI / 2)));
-      edges_.push_back(component.source_vertex[mesh.origin(h)]);
-      edges_.push_back(component.source_vertex[mesh.target(h)]);
+      off_lattice_.insert(off_lattice_.end(), ends.begin(), ends.end());
     }
   }
 
-  // Of their length; none without features.
-  std::optional<double> aligned_share() const {
-    return all_ > 0 ? std::optional<double>(1 - off_ / all_) : std::nullopt;
-  }
-
-  void report_off_lattice(std::vector<Finding>& findings) {
-    if (edges_.empty()) return;
+  void report(SeamlessReport& report, std::vector<Finding>& findings) && {
+    if (all_ > 0) report.feature_share = 1 - off_ / all_;
+    report.creases = std::move(edges_);
+    report.is_crease_aligned = std::move(is_aligned_);
+    if (off_lattice_.empty()) return;
     findings.push_back(
         {Code::features_off_lattice,
-         concat(count(edges_.size() / 2, "edge", "edges"), " of creases, ", rounded(100 * off_ / all_, 2),
-                " % of their length, ", edges_.size() == 2 ? "does" : "do", " not run along the lattice, up to ",
+         concat(count(off_lattice_.size() / 2, "edge", "edges"), " of creases, ", rounded(100 * off_ / all_, 2),
+                " % of their length, ", off_lattice_.size() == 2 ? "does" : "do", " not run along the lattice, up to ",
                 rounded(most_ * 180 / M_PI, 2),
                 " degrees off: they would cross or fold, or cost too much stretch. Use smaller tiles, or "
                 "mark cones at the ends of these creases."),
-         {ElementKind::edges, std::move(edges_)}});
+         {ElementKind::edges, std::move(off_lattice_)}});
   }
 
  private:
   double all_ = 0, off_ = 0, most_ = 0;  // lengths, and radians
-  Array<Index> edges_;                   // off the axes, as the caller's vertices
+  Array<Index> edges_, off_lattice_;     // all, and those off the axes that are not marked, as the caller's vertices
+  Array<char> is_aligned_;
 };
 
 // Components that are larger in the layout than the size of the tiles implies, as small ones are.
@@ -183,7 +185,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   report.tile_size = 1 / (grid.density * unit_scale);
   report.cell = seamless.cell;
   double area = 0, before = 0, after = 0;
-  LatticeFeatures features;
+  LatticeCreases creases;
   OversizeReport oversize(grid.density);
   Array<Failure> failures;
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -201,8 +203,8 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
       report.error = std::max(report.error, cut.error);
     }
     if (options.straighten && lattice.rotation_order() == 4) {
-      features.add(*component.source, component.system->open(component.map->cut_graph, component.map->cut_mesh),
-                   component.map->position);
+      creases.add(*component.source, component.system->open(component.map->cut_graph, component.map->cut_mesh),
+                  component.map->position);
     }
     area += component.system->geometry().total_area;
     before += component.system->geometry().total_area * search.energy(i);
@@ -216,8 +218,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   }
   report_cones_given_up(report, findings);
   if (!failures.empty()) leave_out(failures, components, findings);
-  report.feature_share = features.aligned_share();
-  features.report_off_lattice(findings);
+  std::move(creases).report(report, findings);
   oversize.report(findings);
   report.energy_before = before / area;
   report.energy_after = after / area;

@@ -10,7 +10,7 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Surface, auto_unwrap
-from lsgp.presets.auto_unwrap import TARGET, CompletedCones, GivenCones, complete_cones
+from lsgp.presets.completed_cones import TARGET, CompletedCones, GivenCones, complete_cones
 from map_checks import codes, only
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -114,6 +114,16 @@ def test_a_part_for_which_no_cones_are_found_does_not_refuse_the_others() -> Non
     assert "COMPONENT_SKIPPED" in codes(result.warnings)
     with pytest.raises(lsgp.TopologyError):
         auto_unwrap(surface(strip))
+
+
+def test_cones_that_no_map_can_have_do_not_keep_others_from_theirs() -> None:
+    """A vertex with five or six triangles carries less than 1,080 degrees."""
+    ball = meshes.bumpy_sphere(2)
+    result = auto_unwrap(surface(meshes.merge([ball, ball])), ball.cones[:2], [6 * np.pi, 6 * np.pi])
+    count = len(ball.triangles)
+    assert result.solved.tolist() == [False] * count + [True] * count
+    assert len(result.cones) > 0 and result.cones.min() >= len(ball.positions)
+    assert "COMPONENT_SKIPPED" in codes(result.warnings)
 
 
 def test_open_surfaces_that_lie_flat_get_no_cones() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from lsgp.presets import map_comparison
 from lsgp.presets.border_gains import FullerSquare
+from lsgp.presets.components import Components
 from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
@@ -186,7 +187,7 @@ def test_a_fuller_square_is_worth_few_islands(
     result = lsgp.auto_unwrap(cube, pack="shelves")
     usual, bordered = with_rectangles(result, 2, filled), with_rectangles(result, islands, 1.0)
     for keeps_few, may in ((True, paint), (False, bake)):
-        gain = FullerSquare(cube, 1.0, keeps_few)
+        gain = FullerSquare(Components.of(cube), 1.0, keeps_few)
         assert gain.may_replace(bordered, usual, None) == may
         stretched = replace(result.distortion, l2_stretch=1.001 * result.distortion.l2_stretch)
         assert not gain.may_replace(replace(bordered, distortion=stretched), usual, None)

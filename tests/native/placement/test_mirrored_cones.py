@@ -265,7 +265,7 @@ def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
     usual: int, mirrored: int, free: int, tried: bool, chosen: str
 ) -> None:
     pytest.importorskip("xatlas")
-    unwrapping = lsgp.presets.auto_unwrap
+    unwrapping = lsgp.presets.cone_choices
     result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)))
     choices = unwrapping.ConeChoices(

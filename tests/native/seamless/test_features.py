@@ -12,6 +12,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+from lsgp.surface import surface_arrays
 from map_checks import codes, only, surface
 from meshes import Mesh
 from numpy.typing import NDArray
@@ -85,6 +86,24 @@ def test_that_costs_at_most_a_tenth_of_stretch(name: str) -> None:
     assert of(name).distortion.l2_stretch <= MOST_L2 * of(name, False).distortion.l2_stretch
 
 
+def test_every_component_has_the_cones_that_serve_it() -> None:
+    """Cones for creases stretch the star too much, and without them the prism keeps less of its creases."""
+    prism, star = closed.prism(6, 2, 1.0), closed.star(5, 0.5, 0.5)
+    alone = [lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE) for mesh in (prism, star)]
+    both = meshes.merge([prism, star])
+    result = lsgp.auto_unwrap(surface(both), preset="tile", options=TILE)
+    assert sorted(result.cones) == sorted([*alone[0].cones, *(len(prism.positions) + alone[1].cones)])
+    assert result.seamless.feature_share == 1
+    assert undeclared_faults(surface(both), result, TILE) == []
+
+
+def test_open_components_without_features_get_no_cones_for_them() -> None:
+    box, cup = closed.box(2, (1, 1, 1)), closed.lathe(np.ones(4), np.arange(4.0), 16, caps=(False, True))
+    cones = lsgp._lsgp.feature_cones(surface_arrays(surface(meshes.merge([box, cup]))), True, None)[0]
+    assert sorted(cones) == sorted(lsgp._lsgp.feature_cones(surface_arrays(surface(box)), True, None)[0])
+    assert len(cones) == 8
+
+
 SOFT = [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1), closed.noise_sphere(3, 0.04, 1)]
 
 
@@ -119,6 +138,11 @@ def test_creases_off_the_lattice_are_named() -> None:
     assert {tuple(sorted(edge)) for edge in named.indices.reshape(-1, 2).tolist()} == set(map(tuple, edges.tolist()))
     length = np.linalg.norm(np.diff(mesh.positions[mesh.triangles.ravel()[corners]], axis=1)[:, 0], axis=1)
     assert result.seamless.feature_share == pytest.approx(length[~off].sum() / length.sum(), abs=1e-12)
+    ends_of = np.sort(mesh.triangles.ravel()[corners], axis=1).tolist()
+    is_aligned = zip(np.sort(result.seamless.creases, axis=1).tolist(), result.seamless.is_crease_aligned, strict=True)
+    assert {tuple(edge): bool(aligned) for edge, aligned in is_aligned} == {
+        tuple(edge): not is_off for edge, is_off in zip(ends_of, off.tolist(), strict=True)
+    }
 
 
 def test_tiles_of_a_given_size_keep_what_they_can() -> None:
@@ -173,7 +197,7 @@ def test_creases_become_edges_of_quads(name: str) -> None:
 
 
 def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    unwrapping = lsgp.presets.auto_unwrap
+    unwrapping = lsgp.presets.cone_choices
     box = surface(HARD["box"])
     solver = lsgp.Solver(box)
     usual = unwrapping.complete_cones(solver, unwrapping.GivenCones.of(), TILE)

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cones among which the map decides: usual ones, symmetric ones, and those with which creases run along a lattice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _lsgp
+from ..api import Solver
+from ..base.progress import Progress, share_of
+from ..options import Options
+from ..results import Result
+from ..surface import Pins, Surface, surface_arrays
+from .completed_cones import CompletedCones, GivenCones, complete_cones, or_none
+from .components import Components
+from .map_comparison import (
+    gains_features,
+    may_replace_for_features,
+    may_replace_map,
+    mirrored_cuts_cost_islands,
+    releases_features,
+    runs_along_features,
+    saves_islands,
+    worth_along_features,
+)
+
+MapThrough = tuple[CompletedCones, Result]
+
+# Of the time of placing cones: where those for creases are placed.
+_BEFORE_FEATURES = 0.9
+# And what two attempts, with and without symmetry, have each.
+_TRYING = 0.5
+# What tells that a component is not symmetric.
+_ODD = "NOT_SYMMETRIC"
+
+
+@dataclass(frozen=True, slots=True)
+class ConeChoices:
+    """Cones among which `best_map` chooses, each as of `complete_cones`.
+
+    usual: symmetric ones if all components are symmetric. symmetric: those that differ from the usual ones, or have
+    other cuts; None without. for_features: those with which creases can run along the lattice; None without.
+    """
+
+    usual: CompletedCones
+    symmetric: CompletedCones | None = None
+    for_features: CompletedCones | None = None
+
+
+def possible_cones(
+    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None = None
+) -> ConeChoices:
+    """Those of `complete_cones`, and symmetric ones and those for creases, where there are such.
+
+    symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
+    """
+    if not (given.is_free and follows_features(solver.surface, options)):
+        return _symmetric_cones(solver, given, options, symmetric, progress)
+    found = _symmetric_cones(solver, given, options, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES))
+    return replace(found, for_features=feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0)))
+
+
+def follows_features(surface: Surface, options: Options) -> bool:
+    """Whether marked features or creases of hard surfaces are to run along the lattice."""
+    is_square = options.seamless is not None and options.seamless.lattice == "square"
+    has_features = options.straighten or len(surface.features) > 0
+    return is_square and has_features and options.prescription is None and not len(surface.seams)
+
+
+def feature_cones(solver: Solver, options: Options, progress: Progress | None = None) -> CompletedCones | None:
+    """Cones with which marked features and, with `Options.straighten`, creases of hard surfaces can run along the
+    lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones."""
+    arrays = surface_arrays(solver.surface)
+    chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, _TRYING)))
+    if chosen is None or not len(chosen[0]):
+        return None
+    return or_none(lambda: complete_cones(solver, GivenCones.of(*chosen), options, share_of(progress, _TRYING, 1.0)))
+
+
+def _symmetric_cones(
+    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None
+) -> ConeChoices:
+    """Those of `complete_cones` and, where a component is symmetric, symmetric ones; if these are the same, their cuts
+    may still be others."""
+    if not symmetric or len(given.cones):
+        return ConeChoices(complete_cones(solver, given, options, progress))
+    alike = or_none(lambda: complete_cones(solver, given, options, share_of(progress, 0.0, _TRYING), symmetric=True))
+    if alike is not None:
+        odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
+        others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
+        alike = replace(alike, placement=replace(alike.placement, warnings=others))
+        if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
+            return ConeChoices(alike)
+        alike = replace(alike, is_symmetric=True)
+    usual = complete_cones(solver, given, options, share_of(progress, _TRYING, 1.0))
+    if alike is None:
+        return ConeChoices(usual)
+    is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
+    return ConeChoices(usual, replace(usual, is_symmetric=True) if is_same else alike)
+
+
+def best_map(
+    solver: Solver,
+    choices: ConeChoices,
+    options: Options,
+    pins: Pins | None = None,
+    progress: Progress | None = None,
+) -> MapThrough:
+    """The map through the cones of `possible_cones`: the symmetric ones, or those for creases, if that costs little.
+
+    Where symmetric cuts cost islands, the symmetric cones are tried with other cuts as well. Of several components,
+    only those have cones for creases that gain by them.
+    pins, progress, errors: as for `parameterize`.
+    """
+    symmetric, for_features = choices.symmetric, choices.for_features
+    share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
+    stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
+    along = None
+    if for_features is not None:
+        along = or_none(partial(for_features.parameterize, solver, options, pins, next(stages)))
+        if along is not None and not runs_along_features(along):
+            along = None
+    # Creases along the lattice take time: they are tried with the cones that are chosen.
+    # Those that are released run along it through other cones, perhaps.
+    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along)
+    tried = options if is_chosen else replace(options, straighten=False)
+    best = choices.usual, choices.usual.parameterize(solver, tried, pins, next(stages))
+    if symmetric is not None:
+        # Comparing, and the map with other cuts, which few models need, have no time of their own.
+        end = (2 + (for_features is not None)) * share
+        mapping, still = next(stages), share_of(progress, end, end)
+        best = _best_symmetric(solver, symmetric, best, tried, pins, (mapping, still))
+    if along is not None:
+        best = _best_along(solver, (for_features, along), best, options, is_chosen, pins, next(stages))
+    elif not is_chosen:
+        best = best[0], best[0].parameterize(solver, options, pins, next(stages))
+    return best[0], best[0].told(best[1], options)
+
+
+def _best_symmetric(
+    solver: Solver,
+    symmetric: CompletedCones,
+    usual: MapThrough,
+    options: Options,
+    pins: Pins | None,
+    progress: tuple[Progress | None, Progress | None],
+) -> MapThrough:
+    """The usual map, or one through symmetric cones if that costs little.  progress: of the first and the other maps"""
+    best = usual
+    may_replace = partial(may_replace_map, square_share=options.square_share, progress=progress[1])
+    for candidate in _symmetric_maps(solver, symmetric, usual, options, pins, progress):
+        result = candidate[1]
+        if may_replace(result, usual[1]) and (best is usual or may_replace(result, best[1])):
+            best = candidate
+    return best
+
+
+def _symmetric_maps(
+    solver: Solver,
+    symmetric: CompletedCones,
+    usual: MapThrough,
+    options: Options,
+    pins: Pins | None,
+    progress: tuple[Progress | None, Progress | None],
+) -> Iterator[MapThrough]:
+    """The map through symmetric cones, and where its symmetric cuts cost islands, one with other cuts that save them.
+
+    Arguments as of `_best_symmetric`.
+    """
+    usual_cones, plain = usual
+    mirrored = or_none(partial(symmetric.parameterize, solver, options, pins, progress[0]))
+    if mirrored is None:
+        return
+    yield symmetric, mirrored
+    has_other_cones = set(symmetric.cones.tolist()) != set(usual_cones.cones.tolist())
+    frees_cuts = not options.mirrored_cuts
+    if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored, plain)):
+        return
+    freed = replace(symmetric, is_symmetric=False)
+    free = or_none(partial(freed.parameterize, solver, options, pins, progress[1]))
+    if free is not None and saves_islands(free, mirrored, plain):
+        yield freed, free
+
+
+def _best_along(
+    solver: Solver,
+    along: MapThrough,
+    best: MapThrough,
+    options: Options,
+    is_straightened: bool,
+    pins: Pins | None,
+    progress: Progress | None,
+) -> MapThrough:
+    """The map through cones for creases, the best other one, or one through cones of both, by component.
+
+    is_straightened: whether the other one is made with the options, not without straight creases.
+    """
+    surface = solver.surface
+    components = Components.of(surface)
+    is_other = _have_other_cones(components, along[0], best[0])
+    gain = gains_features(components, along[1], best[1])
+    if not (is_straightened or gain[is_other].all()):
+        # Along creases the usual one is stretched as well.
+        best = best[0], best[0].parameterize(solver, options, pins, share_of(progress, 0.0, _TRYING))
+        gain = gains_features(components, along[1], best[1])
+    if gain[is_other].all():
+        return along
+    candidates = [along]
+    if gain[is_other].any():
+        cones = best[0].joined(along[0], surface, gain[components.of_vertex])
+        joint = or_none(partial(cones.parameterize, solver, options, pins, share_of(progress, _TRYING, 1.0)))
+        if joint is not None:
+            candidates.insert(0, (cones, joint))
+    better = [candidate for candidate in candidates if may_replace_for_features(candidate[1], best[1])]
+    return max([*better, best], key=lambda candidate: worth_along_features(candidate[1]))
+
+
+def _have_other_cones(components: Components, one: CompletedCones, other: CompletedCones) -> NDArray[np.bool_]:
+    """Which components have other cones, or other angles of them, in one choice than in the other, (c,)."""
+    own = set(zip(one.cones.tolist(), one.angles, strict=True))
+    differing = own ^ set(zip(other.cones.tolist(), other.angles, strict=True))
+    out = np.zeros(components.count, bool)
+    out[components.of_vertex[[cone for cone, _ in differing]]] = True
+    return out
