@@ -188,12 +188,20 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
 
 
 def worth_along_features(result: Result) -> float:
-    """By which seamless maps are compared: features along the lattice, little stretch, and large tiles."""
+    """By which seamless maps are compared: features along the lattice, little stretch, and large tiles everywhere."""
+    is_uneven = any(finding.code == "HIGH_DISTORTION" for finding in result.warnings)
     return (
         feature_share(result)
         - _FEATURES_FOR_STRETCH * result.distortion.l2_stretch
-        + _FEATURES_FOR_TILES * np.log2(result.seamless.tile_size)
+        + _FEATURES_FOR_TILES * (np.log2(result.seamless.tile_size) - is_uneven)
     )
+
+
+def reaches(result: Result, target: float) -> bool:
+    """Whether its L2 stretch is within a target that is meant for conformal maps without lattice: low stretch can reach
+    it where these do not, and features along the lattice may cost a tenth."""
+    runs_along = result.seamless is not None and runs_along_features(result)
+    return result.distortion.l2_stretch <= (_MOST_L2_FOR_FEATURES if runs_along else 1) * target
 
 
 def gains_features(components: Components, along: Result, usual: Result) -> NDArray[np.bool_]:
