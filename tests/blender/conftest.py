@@ -18,7 +18,7 @@ else:
 
     @pytest.fixture(autouse=True, scope="session")
     def tries(pytestconfig):
-        """How dense tight layouts get is the library's doing, which no Blender changes; all else is so after any try."""
+        """How dense tight layouts get no Blender changes, and all else is so after any number of tries."""
         if pytestconfig.getoption("few_tries"):
             from lsgp.layouts import layout_search
 
