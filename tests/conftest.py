@@ -17,6 +17,12 @@ def interruptible() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
+@pytest.fixture
+def few_tries(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tight layouts are looked for in few ways, for tests of what is so after any number of them."""
+    monkeypatch.setattr("lsgp.layouts.layout_search._TRIES", (4, 4))
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Suites inside Blenders are single tests of minutes: each worker begins with some, so that none is waited for.
 

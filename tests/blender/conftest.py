@@ -13,6 +13,17 @@ if "CONE_UNWRAP_EXTENSION" not in os.environ:
 else:
     import bpy
 
+    def pytest_addoption(parser):
+        parser.addoption("--few-tries", action="store_true", help="look for tight layouts in few ways, which is fast")
+
+    @pytest.fixture(autouse=True, scope="session")
+    def tries(pytestconfig):
+        """How dense tight layouts get no Blender changes, and all else is so after any number of tries."""
+        if pytestconfig.getoption("few_tries"):
+            from lsgp.layouts import layout_search
+
+            layout_search._TRIES = (4, 4)
+
     @pytest.fixture(autouse=True)
     def empty_scene():
         """Every test starts in an empty file; the extension stays enabled."""

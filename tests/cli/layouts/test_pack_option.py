@@ -91,7 +91,7 @@ def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts
 
 
 @pytest.mark.parametrize(("margin", "size"), [(4, None), (16, None), (1, 256), (0, 64), (None, 512)])
-def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, margin, size) -> None:
+def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, few_tries, margin, size) -> None:
     options = [*(("--margin", margin) if margin is not None else ()), *(("--texture-size", size) if size else ())]
     done = lsgp(*BAKE, "--pack", "tight", *options)
     assert (done.code, done.err) == (0, "")
@@ -100,7 +100,7 @@ def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, margi
     assert found.between >= 2 * wanted * texel - WRITTEN and found.border >= wanted * texel - WRITTEN
 
 
-def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, packer) -> None:
+def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, packer, few_tries) -> None:
     for density, outside in ((20, False), (200, True)):
         options = ("--texel-density", density, "--texture-size", 512, "--margin", 6)
         done = lsgp(*BAKE, "--pack", "tight", *options)
@@ -112,7 +112,7 @@ def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, par
 
 
 @pytest.mark.parametrize("options", [("--preset", "bake"), ("--overlaps", "split")])
-def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packer, options) -> None:
+def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packer, few_tries, options) -> None:
     done = lsgp(*UNWRAP, *options, "--udim", 3, "--margin", 8, "--texture-size", 512)
     assert (done.code, done.err) == (0, "")
     triangles, uv, island = layout(parts / "out.obj")
@@ -131,7 +131,7 @@ def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packe
     assert plain.report()["packing"]["tiles"] == 1 and "UDIM" not in plain.out
 
 
-def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, packer) -> None:
+def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, packer, few_tries) -> None:
     assert lsgp(*UNWRAP).report()["packing"] is None
     plain = (parts / "out.obj").read_bytes()
     assert lsgp(*UNWRAP, "--pack", "shelves").report()["packing"]["packer"] == "shelves"
@@ -179,7 +179,7 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
         assert done.code == 2 and told in done.err, options
 
 
-def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer) -> None:
+def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer, few_tries) -> None:
     kite = np.array([[0, 0, 0], [2, 0, 0], [1.5, 1, 0], [0.25, 2, 0]])
     polygons = [kite, kite + np.array([8, 0, 0]), (kite * np.array([-1, 1, 1]))[[0, 3, 2, 1]] - np.array([8, 0, 0])]
     faces = [list(range(4 * i, 4 * i + 4)) for i in range(3)]
@@ -200,7 +200,7 @@ def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer) -> Non
         assert refused.code == 2 and "--stack is for" in refused.err
 
 
-def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, packer) -> None:
+def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, packer, few_tries) -> None:
     done = lsgp(*BAKE, "--pack", "tight", "--margin", 32, "--texture-size", 64)
     assert done.code == 2 and "no room" in done.err
     refused = lsgp(*BAKE, "--pack", "tight", "--margin", 30, "--texture-size", 64)

@@ -42,7 +42,7 @@ def density_of(path: Path, size: int) -> float:
     return math.sqrt(texels / area)
 
 
-def test_the_file_has_the_density_and_the_report_says_so(lsgp, parts: Path) -> None:
+def test_the_file_has_the_density_and_the_report_says_so(lsgp, parts: Path, few_tries) -> None:
     done = lsgp(*UNWRAP, "--texel-density", 12.5, "--texture-size", 2048)
     assert (done.code, done.err) == (0, "")
     assert density_of(parts / "out.obj", 2048) == pytest.approx(12.5, rel=1e-5)
@@ -56,7 +56,7 @@ def test_the_file_has_the_density_and_the_report_says_so(lsgp, parts: Path) -> N
     assert lsgp("measure", "out.obj", "--report", "measured.json").report("measured.json")["texel_density"] is None
 
 
-def test_the_layout_is_the_usual_one_at_another_scale(lsgp, parts: Path) -> None:
+def test_the_layout_is_the_usual_one_at_another_scale(lsgp, parts: Path, few_tries) -> None:
     assert lsgp(*UNWRAP).report()["texel_density"] is None
     usual = uv_of(parts / "out.obj")
     lsgp(*UNWRAP, "--texel-density", 3, "--texture-size", 512)
@@ -64,7 +64,7 @@ def test_the_layout_is_the_usual_one_at_another_scale(lsgp, parts: Path) -> None
     assert np.nanmax(ratio) == pytest.approx(np.nanmin(ratio), rel=1e-6)
 
 
-def test_islands_outside_the_square_are_a_warning_with_their_faces(lsgp, parts: Path) -> None:
+def test_islands_outside_the_square_are_a_warning_with_their_faces(lsgp, parts: Path, few_tries) -> None:
     done = lsgp(*UNWRAP, "--texel-density", 300, "--texture-size", 1024)
     assert done.code == 0 and "ISLANDS_OUTSIDE" in done.err
     (warning,) = done.report()["warnings"]
@@ -78,7 +78,7 @@ def test_islands_outside_the_square_are_a_warning_with_their_faces(lsgp, parts: 
     assert outside and outside <= set(warning["elements"]["indices"])
 
 
-def test_islands_are_spread_over_udim_tiles(lsgp, parts: Path) -> None:
+def test_islands_are_spread_over_udim_tiles(lsgp, parts: Path, few_tries) -> None:
     density = 55
     done = lsgp(*UNWRAP, "--texel-density", density, "--texture-size", 512, "--udim", 8, "--margin", 8)
     assert (done.code, done.err) == (0, "")
@@ -114,7 +114,9 @@ def test_tiles_get_the_density_that_is_asked_for(lsgp, parts: Path, preset: str)
         (("--texel-density", 55, "--udim", 1), "TOO_FEW_TILES"),
     ],
 )
-def test_what_does_not_fit_is_refused_and_nothing_written(lsgp, parts: Path, options: tuple, code: str) -> None:
+def test_what_does_not_fit_is_refused_and_nothing_written(
+    lsgp, parts: Path, few_tries, options: tuple, code: str
+) -> None:
     done = lsgp(*UNWRAP, *options, "--texture-size", 512)
     assert done.code == 3 and code in done.err
     report = done.report()

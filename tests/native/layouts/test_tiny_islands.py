@@ -37,7 +37,7 @@ def spoiled(result: lsgp.Result) -> np.ndarray:
 @pytest.mark.parametrize("way", WAYS, ids=["square", "texel density", "tiles"])
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("exponent", [0, -9, *many_solves(-3, -12)])
-def test_islands_that_single_precision_spoils_are_named(shape: str, exponent: int, way: dict) -> None:
+def test_islands_that_single_precision_spoils_are_named(few_tries, shape: str, exponent: int, way: dict) -> None:
     result = lsgp.auto_unwrap(with_speck(shape, exponent), **way)
     said = [finding for finding in result.warnings if finding.code == "ISLANDS_TINY"]
     named = np.unique(np.concatenate([finding.elements.indices for finding in said]) if said else np.zeros(0, int))

@@ -103,7 +103,7 @@ def test_tiles_are_in_rows_of_ten() -> None:
     assert scale(uv, packed, island) == pytest.approx(0.9, rel=0.02)
 
 
-def test_one_tile_is_the_unit_square(given: lsgp.Result) -> None:
+def test_one_tile_is_the_unit_square(given: lsgp.Result, few_tries) -> None:
     whole = given.corner_uv, given.island
     assert np.array_equal(lsgp.pack_islands(*whole, udim=1), lsgp.pack_islands(*whole))
     assert np.array_equal(lsgp.pack_islands(*whole, udim=3), lsgp.pack_islands(*whole, udim=3))
@@ -114,7 +114,7 @@ def test_islands_that_may_not_be_turned_are_only_shifted(given: lsgp.Result) -> 
     assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
 
 
-def test_presets_take_tiles() -> None:
+def test_presets_take_tiles(given: lsgp.Result, few_tries) -> None:
     found = lsgp.auto_unwrap(PARTS, preset="bake", udim=3, margin=0.02)
     shared = dataclasses.replace(lsgp.preset_options("bake"), square_share=3.0)
     given = lsgp.auto_unwrap(PARTS, preset="bake", options=shared, pack="shelves")
