@@ -10,6 +10,8 @@ namespace lsgp {
 
 namespace {
 
+constexpr Index least_per_flipped = 2;  // triangles: with fewer the layout has collapsed as a whole
+
 // The spacing of binary fractions that float32 represents exactly over the layout's range, with a spare bit for later
 // moves by whole cells.
 double fraction_for(double largest) { return std::exp2(std::ceil(std::log2(largest + 1)) + 1 - 24); }
@@ -58,7 +60,8 @@ void ExactLayout::snap() {
   }
 }
 
-void ExactLayout::turn_upright(Array<Index> flipped, const PerHalfedge<char>& features) {
+void ExactLayout::turn_upright(Array<Index> flipped, PerHalfedge<char> features) {
+  if (least_per_flipped * ssize(flipped) > mesh_.triangle_count()) return;
   const PerVertex<char> on_cut = on_cuts(mesh_, map_.cut_graph);
   const auto copies = [&](Index v) {
     Array<MovingCopy> out;
@@ -73,16 +76,32 @@ void ExactLayout::turn_upright(Array<Index> flipped, const PerHalfedge<char>& fe
   };
   RoundingRepair repair(mesh_, map_.cut_mesh, copies, fraction(), position_);
   flipped = repair.repair(std::move(flipped), features);
+  release_shorter_edges(flipped, features);
+  flipped = repair.repair(std::move(flipped), features);
   repair.repair(std::move(flipped), {});
+}
+
+// Needles on creases have edges of these on either side, but the vertex between two of them may leave it.
+void ExactLayout::release_shorter_edges(const Array<Index>& triangles, PerHalfedge<char>& features) const {
+  for (const Index f : triangles) {
+    const auto length = [&](Index h) {
+      return std::abs(position_[map_.cut_mesh.copy_of_corner[next(h)]] - position_[map_.cut_mesh.copy_of_corner[h]]);
+    };
+    const Index first = 3 * f;
+    Index longest = first;
+    for (const Index h : {first + 1, first + 2}) longest = length(h) > length(longest) ? h : longest;
+    for (const Index h : {next(longest), prev(longest)}) {
+      features[h] = 0;
+      if (mesh_.twin[h] != none) features[mesh_.twin[h]] = 0;
+    }
+  }
 }
 
 double ExactLayout::fraction() const {
   return fraction_for(std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff()));
 }
 
-bool ExactLayout::is_cone(Index v) const {
-  return mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0;
-}
+bool ExactLayout::is_cone(Index v) const { return mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0; }
 
 Array<Index> ExactLayout::find_unreadable() const {
   Array<Index> out;

@@ -21,7 +21,7 @@ class ExactLayout {
 
   // Of triangles that rounding has flipped, or left without an area. Edges of features that run along an axis still do,
   // where possible.
-  void turn_upright(Array<Index> flipped, const PerHalfedge<char>& features);
+  void turn_upright(Array<Index> flipped, PerHalfedge<char> features);
 
   // The cut edges, as vertex pairs, whose stored sides do not determine the rotation of their cut: some have collapsed
   // to a point.
@@ -35,6 +35,7 @@ class ExactLayout {
   Complex cross(Complex z, Index h) const;
   Complex turn_across(Index h) const;
   double fraction() const;
+  void release_shorter_edges(const Array<Index>& triangles, PerHalfedge<char>& features) const;
   bool is_cone(Index v) const;
 
   bool on_lattice(Complex z) const { return std::abs(z - lattice_.nearest(z)) < rounding; }

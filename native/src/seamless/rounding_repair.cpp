@@ -12,7 +12,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr int most_rounds = 100;
+constexpr std::size_t most_visits = 24;  // of vertices, for each triangle that is flipped
+constexpr int farthest_ring = 4;
+constexpr double flatness_of_flipped = 2;
 constexpr double least_gain = 1e-9;
 
 // Volatile: GCC 12 removes two adjacent conversions to float and back.
@@ -62,39 +64,56 @@ RoundingRepair::RoundingRepair(const HalfedgeMesh& mesh, const CutMesh& cut_mesh
       position_(position) {}
 
 Array<Index> RoundingRepair::repair(Array<Index> flipped, const PerHalfedge<char>& kept) {
-  Array<Index> vertices = corners_of(flipped);
-  for (int round = 0; round < most_rounds && !flipped.empty(); ++round) {
+  std::size_t visits = most_visits * flipped.size();
+  int rings = 0;
+  while (!flipped.empty() && rings <= farthest_ring) {
+    const Array<Index> vertices = vertices_near(flipped, rings);
     bool has_changed = false;
-    for (const Index v : vertices) has_changed = improve(v, kept) || has_changed;
-    Array<Index> flat = triangles_around(vertices);
-    flat.erase(std::remove_if(flat.begin(), flat.end(), [&](Index f) { return flatness(f) == 0; }), flat.end());
-    flipped.clear();
-    std::copy_if(flat.begin(), flat.end(), std::back_inserter(flipped), [&](Index f) { return flatness(f) >= 2; });
-    if (has_changed) continue;
-    Array<Index> more = corners_of(flat);
-    if (more.size() <= vertices.size()) break;
-    vertices = std::move(more);
+    for (const Index v : vertices) {
+      if (visits == 0) return flipped;
+      --visits;
+      has_changed = improve(v, kept) || has_changed;
+    }
+    const std::size_t before = flipped.size();
+    flipped = triangles_around(vertices);
+    flipped.erase(
+        std::remove_if(flipped.begin(), flipped.end(), [&](Index f) { return flatness(f) < flatness_of_flipped; }),
+        flipped.end());
+    if (flipped.size() < before)
+      rings = 0;
+    else if (!has_changed)
+      ++rings;
   }
   return flipped;
+}
+
+// Corners of these triangles, and of so many rings of flat triangles around them.
+Array<Index> RoundingRepair::vertices_near(const Array<Index>& triangles, int rings) const {
+  Array<Index> out = corners_of(triangles);
+  for (int ring = 0; ring < rings; ++ring) {
+    Array<Index> flat = triangles_around(out);
+    flat.erase(std::remove_if(flat.begin(), flat.end(), [&](Index f) { return flatness(f) == 0; }), flat.end());
+    out = corners_of(flat);
+  }
+  return out;
 }
 
 RoundingRepair::Star RoundingRepair::star_of(Index v) const {
   Star out{copies_(v), {}};
   if (out.copies.empty()) return out;
   mesh_.for_each_outgoing(v, [&](Index h) {
-    const auto moving = std::find_if(out.copies.begin(), out.copies.end(), [&](const MovingCopy& copy) {
-      return copy.copy == cut_mesh_.copy_of_corner[h];
-    });
+    const auto moving = std::find_if(out.copies.begin(), out.copies.end(),
+                                     [&](const MovingCopy& copy) { return copy.copy == cut_mesh_.copy_of_corner[h]; });
     out.corners.push_back({h, moving->turn});
   });
   return out;
 }
 
-// What a triangle lacks of a height of one step, in steps, and 1 more if it has no area: 2 if it has collapsed.
+// What a triangle lacks of a height of one step, in steps, and 1 more without an area.
 double RoundingRepair::flatness(Complex a, Complex b, Complex c) const {
   const double area = doubled_area(a, b, c);
   const double longest = std::sqrt(std::max({std::norm(b - a), std::norm(c - b), std::norm(a - c)}));
-  if (!(longest > 0)) return 2;
+  if (!(longest > 0)) return flatness_of_flipped;
   return std::max(0.0, 1 - area / (longest * step_)) + (area > 0 ? 0 : 1);
 }
 

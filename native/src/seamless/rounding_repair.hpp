@@ -52,6 +52,7 @@ class RoundingRepair {
   double flatness(Index f) const;
   double flatness(const Star& star, Complex move) const;
   bool keeps_axes(const Star& star, const PerHalfedge<char>& kept, Complex move) const;
+  Array<Index> vertices_near(const Array<Index>& triangles, int rings) const;
   bool improve(Index v, const PerHalfedge<char>& kept);
   Array<Index> triangles_around(const Array<Index>& vertices) const;
   Array<Index> corners_of(const Array<Index>& triangles) const;
