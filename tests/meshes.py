@@ -7,7 +7,8 @@ Every function is deterministic.  Triangles are counter-clockwise seen from outs
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -382,6 +383,28 @@ def with_zero_area(mesh: Mesh, triangle: int) -> Mesh:
     positions = np.concatenate([mesh.positions, [(mesh.positions[a] + mesh.positions[b]) / 2]])
     triangles = np.concatenate([np.delete(mesh.triangles, triangle, axis=0), [[a, m, c], [m, b, c], [a, b, m]]])
     return make(positions, triangles, mesh.cones)
+
+
+def with_needles(mesh: Mesh, split: Iterable[int], height: float, count: int = 1) -> Mesh:
+    """The first edges of triangles `split` by so many vertices beside them, on that side only: T-junctions closed by
+    needles, of heights relative to their length."""
+    positions, triangles, new = list(mesh.positions), [], len(mesh.positions)
+    chosen = set(split)
+    for f, (a, b, c) in enumerate(mesh.triangles.tolist()):
+        if f not in chosen:
+            triangles.append([a, b, c])
+            continue
+        along = mesh.positions[b] - mesh.positions[a]
+        inward = mesh.positions[c] - mesh.positions[a]
+        inward = inward - along * (along @ inward) / (along @ along)
+        inward *= np.linalg.norm(along) / np.linalg.norm(inward)
+        share = np.arange(1, count + 1)[:, None] / (count + 1)
+        positions += list(mesh.positions[a] + share * along + 4 * height * share * (1 - share) * inward)
+        chain = [a, *range(new, new + count), b]
+        triangles += [[p, q, c] for p, q in pairwise(chain)]
+        triangles += [[a, q, p] for p, q in pairwise(chain[1:])]
+        new += count
+    return make(np.array(positions), np.array(triangles, np.int32), mesh.cones)
 
 
 def with_fin(mesh: Mesh) -> tuple[Mesh, tuple[int, int]]:

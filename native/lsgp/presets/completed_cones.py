@@ -21,7 +21,7 @@ from ..ledger import LedgerPart, build_ledger, surface_of_triangles
 from ..options import Options
 from ..results import Placement, Result
 from ..surface import Pins, Surface
-from .map_comparison import reaches
+from .map_comparison import reached_up_to
 
 T = TypeVar("T")
 
@@ -102,8 +102,7 @@ class CompletedCones:
         if self.placement is None:
             return replace(result, warnings=of_map)
         findings = [_true_of_map(finding, result) for finding in self.placement.warnings]
-        is_other_map = options.mode == "low-stretch" or options.seamless is not None
-        if self.by_target and is_other_map and reaches(result, TARGET):
+        if self.by_target and result.distortion.l2_stretch <= reached_up_to(TARGET, result, options):
             findings = [finding for finding in findings if finding.code != "PLACEMENT_NOT_REACHED"]
         return replace(result, warnings=joined_warnings(findings, of_map))
 

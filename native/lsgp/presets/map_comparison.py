@@ -15,6 +15,7 @@ from ..errors import InputError
 from ..lattice import island_boxes
 from ..layouts.layout_search import Turned
 from ..layouts.packing import pack_islands, packer_name, turns_of
+from ..options import Options
 from ..results import Result
 from ..triangles import uv_area
 from .components import Components
@@ -197,11 +198,12 @@ def worth_along_features(result: Result) -> float:
     )
 
 
-def reaches(result: Result, target: float) -> bool:
-    """Whether its L2 stretch is within a target that is meant for conformal maps without lattice: low stretch can reach
-    it where these do not, and features along the lattice may cost a tenth."""
-    runs_along = result.seamless is not None and runs_along_features(result)
-    return result.distortion.l2_stretch <= (_MOST_L2_FOR_FEATURES if runs_along else 1) * target
+def reached_up_to(target: float, result: Result, options: Options) -> float:
+    """The L2 stretch up to which a map reaches a target that is meant for conformal ones, which are judged when cones
+    are placed: low stretch may reach it where these do not, and features along the lattice may cost a tenth."""
+    if result.seamless is not None and runs_along_features(result):
+        return _MOST_L2_FOR_FEATURES * target
+    return target if options.mode == "low-stretch" else 0.0
 
 
 def gains_features(components: Components, along: Result, usual: Result) -> NDArray[np.bool_]:

@@ -10,6 +10,8 @@ namespace lsgp {
 
 namespace {
 
+constexpr Index least_per_flipped = 2;  // triangles: with fewer the layout has collapsed as a whole
+
 // The spacing of binary fractions that float32 represents exactly over the layout's range, with a spare bit for later
 // moves by whole cells.
 double fraction_for(double largest) { return std::exp2(std::ceil(std::log2(largest + 1)) + 1 - 24); }
@@ -18,15 +20,7 @@ Complex round_to(Complex z, double fraction) {
   return {std::round(z.real() / fraction) * fraction, std::round(z.imag() / fraction) * fraction};
 }
 
-// Volatile: GCC 12 removes two adjacent conversions to float and back.
-double stored_number(double x) {
-  const volatile float stored = static_cast<float>(x);
-  return stored;
-}
-
 }  // namespace
-
-Complex as_stored(Complex z) { return {stored_number(z.real()), stored_number(z.imag())}; }
 
 ExactLayout::ExactLayout(const SeamlessComponent& component, const PointLattice& lattice, Complex shift,
                          Eigen::VectorXcd& position)
@@ -40,8 +34,7 @@ ExactLayout::ExactLayout(const SeamlessComponent& component, const PointLattice&
 }
 
 void ExactLayout::snap() {
-  const double largest = std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff());
-  const double fraction = fraction_for(largest);
+  const double fraction = this->fraction();
   for (Complex& translation : translations_) {
     translation = on_lattice(translation) ? lattice_.nearest(translation) : round_to(translation, fraction);
   }
@@ -55,8 +48,7 @@ void ExactLayout::snap() {
     }
     const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
     Complex z = position_[all.front().copy];
-    const bool is_cone = mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0;
-    if (is_cone && on_lattice(z - shift_)) {
+    if (is_cone(v) && on_lattice(z - shift_)) {
       z = lattice_.nearest(z - shift_) + shift_;
     } else {
       z = lattice_.square() ? round_to(z, fraction) : as_stored(z);
@@ -67,6 +59,49 @@ void ExactLayout::snap() {
     }
   }
 }
+
+void ExactLayout::turn_upright(Array<Index> flipped, PerHalfedge<char> features) {
+  if (least_per_flipped * ssize(flipped) > mesh_.triangle_count()) return;
+  const PerVertex<char> on_cut = on_cuts(mesh_, map_.cut_graph);
+  const auto copies = [&](Index v) {
+    Array<MovingCopy> out;
+    const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
+    if (is_cone(v) && on_cut[v] && on_lattice(position_[all.front().copy] - shift_)) return out;
+    for (const Sector& sector : all) {
+      Complex turn = 1;
+      if (!out.empty()) turn = out.back().turn * turn_across(sector.opened_by);
+      out.push_back({sector.copy, turn});
+    }
+    return out;
+  };
+  RoundingRepair repair(mesh_, map_.cut_mesh, copies, fraction(), position_);
+  flipped = repair.repair(std::move(flipped), features);
+  release_shorter_edges(flipped, features);
+  flipped = repair.repair(std::move(flipped), features);
+  repair.repair(std::move(flipped), {});
+}
+
+// Needles on creases have edges of these on either side, but the vertex between two of them may leave it.
+void ExactLayout::release_shorter_edges(const Array<Index>& triangles, PerHalfedge<char>& features) const {
+  for (const Index f : triangles) {
+    const auto length = [&](Index h) {
+      return std::abs(position_[map_.cut_mesh.copy_of_corner[next(h)]] - position_[map_.cut_mesh.copy_of_corner[h]]);
+    };
+    const Index first = 3 * f;
+    Index longest = first;
+    for (const Index h : {first + 1, first + 2}) longest = length(h) > length(longest) ? h : longest;
+    for (const Index h : {next(longest), prev(longest)}) {
+      features[h] = 0;
+      if (mesh_.twin[h] != none) features[mesh_.twin[h]] = 0;
+    }
+  }
+}
+
+double ExactLayout::fraction() const {
+  return fraction_for(std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff()));
+}
+
+bool ExactLayout::is_cone(Index v) const { return mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0; }
 
 Array<Index> ExactLayout::find_unreadable() const {
   Array<Index> out;
@@ -104,10 +139,14 @@ Array<SeamlessCut> ExactLayout::certify(const Component& component) const {
   return out;
 }
 
+Complex ExactLayout::turn_across(Index h) const {
+  const Complex turn = lattice_.unit(turns_[map_.cut_graph.cut_of[h]]);
+  return map_.cut_graph.runs_forward[h] ? std::conj(turn) : turn;
+}
+
 Complex ExactLayout::cross(Complex z, Index h) const {
-  const Index cut = map_.cut_graph.cut_of[h];
-  const Complex turn = lattice_.unit(turns_[cut]), translation = translations_[cut];
-  return map_.cut_graph.runs_forward[h] ? std::conj(turn) * (z - translation) : turn * z + translation;
+  const Complex translation = translations_[map_.cut_graph.cut_of[h]];
+  return map_.cut_graph.runs_forward[h] ? turn_across(h) * (z - translation) : turn_across(h) * z + translation;
 }
 
 }  // namespace lsgp

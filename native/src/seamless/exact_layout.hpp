@@ -6,12 +6,10 @@
 
 #include "base/array.hpp"
 #include "plane/point_lattice.hpp"
+#include "seamless/rounding_repair.hpp"
 #include "seamless/seamless_component.hpp"
 
 namespace lsgp {
-
-// As single precision stores it.
-Complex as_stored(Complex z);
 
 // Replaces points almost on the lattice by lattice points, and all others by numbers representable in float32.
 class ExactLayout {
@@ -20,6 +18,10 @@ class ExactLayout {
               Eigen::VectorXcd& position);
 
   void snap();
+
+  // Of triangles that rounding has flipped, or left without an area. Edges of features that run along an axis still do,
+  // where possible.
+  void turn_upright(Array<Index> flipped, PerHalfedge<char> features);
 
   // The cut edges, as vertex pairs, whose stored sides do not determine the rotation of their cut: some have collapsed
   // to a point.
@@ -31,6 +33,10 @@ class ExactLayout {
  private:
   // From the copy on the right of an outgoing cut halfedge to the one on its left, seen from the vertex.
   Complex cross(Complex z, Index h) const;
+  Complex turn_across(Index h) const;
+  double fraction() const;
+  void release_shorter_edges(const Array<Index>& triangles, PerHalfedge<char>& features) const;
+  bool is_cone(Index v) const;
 
   bool on_lattice(Complex z) const { return std::abs(z - lattice_.nearest(z)) < rounding; }
 
