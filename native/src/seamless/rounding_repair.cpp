@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/checkpoint.hpp"
 #include "plane/predicates.hpp"
 
 namespace lsgp {
@@ -146,8 +147,10 @@ bool RoundingRepair::keeps_axes(const Star& star, const PerHalfedge<char>& kept,
 }
 
 bool RoundingRepair::improve(Index v, const PerHalfedge<char>& kept) {
+  constexpr double operations = 30;  // for a triangle
   const Star star = star_of(v);
   if (star.copies.empty()) return false;
+  checkpoint(operations * static_cast<double>(star.corners.size() * moves_.size()));
   double least = flatness(star, 0);
   Complex best = 0;
   for (const Complex move : moves_) {

@@ -295,6 +295,9 @@ REVIEWED = {
     "seamless/lattice_search.cpp": [
         ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),
     ],
+    "seamless/rounding_repair.cpp": [
+        ("while (!flipped.empty() && rings <= farthest_ring)", "a budget of visits of vertices", OWN),
+    ],
     "seamless/seamless.cpp": [("for (;;)", "each round leaves out a part, or ends it", WITHIN)],
     "solvers/cholesky.cpp": [
         ("while (!waiting.empty() && plan.parent[waiting.back()] == i)", "children in a tree, each once", SHORT),
