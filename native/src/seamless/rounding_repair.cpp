@@ -45,12 +45,13 @@ Array<Complex> moves_of(double step) {
 
 Complex as_stored(Complex z) { return {stored_number(z.real()), stored_number(z.imag())}; }
 
-Array<Index> find_flipped_as_stored(const CutMesh& cut_mesh, const Eigen::VectorXcd& position) {
-  const Eigen::VectorXcd stored = position.unaryExpr([](Complex z) { return as_stored(z); });
+Array<Index> find_flipped(const CutMesh& cut_mesh, const Eigen::VectorXcd& position) {
   Array<Index> out;
   for (Index f = 0; f < ssize(cut_mesh.copy_of_corner) / 3; ++f) {
-    const auto corner = [&](int c) { return stored[cut_mesh.copy_of_corner[3 * f + c]]; };
-    if (!(doubled_area(corner(0), corner(1), corner(2)) > 0)) out.push_back(f);
+    const auto corner = [&](int c) { return position[cut_mesh.copy_of_corner[3 * f + c]]; };
+    const auto stored = [&](int c) { return as_stored(corner(c)); };
+    const bool is_upright = doubled_area(corner(0), corner(1), corner(2)) > 0;
+    if (!is_upright || !(doubled_area(stored(0), stored(1), stored(2)) > 0)) out.push_back(f);
   }
   return out;
 }
@@ -110,8 +111,12 @@ RoundingRepair::Star RoundingRepair::star_of(Index v) const {
   return out;
 }
 
-// What a triangle lacks of a height of one step, in steps, and 1 more without an area.
+// What a triangle lacks of a height of one step, in steps, and 1 more without an area, as stored or before.
 double RoundingRepair::flatness(Complex a, Complex b, Complex c) const {
+  return std::max(exact_flatness(a, b, c), exact_flatness(as_stored(a), as_stored(b), as_stored(c)));
+}
+
+double RoundingRepair::exact_flatness(Complex a, Complex b, Complex c) const {
   const double area = doubled_area(a, b, c);
   const double longest = std::sqrt(std::max({std::norm(b - a), std::norm(c - b), std::norm(a - c)}));
   if (!(longest > 0)) return flatness_of_flipped;
@@ -119,7 +124,7 @@ double RoundingRepair::flatness(Complex a, Complex b, Complex c) const {
 }
 
 double RoundingRepair::flatness(Index f) const {
-  const auto corner = [&](int c) { return as_stored(position_[cut_mesh_.copy_of_corner[3 * f + c]]); };
+  const auto corner = [&](int c) { return position_[cut_mesh_.copy_of_corner[3 * f + c]]; };
   return flatness(corner(0), corner(1), corner(2));
 }
 
@@ -128,7 +133,7 @@ double RoundingRepair::flatness(const Star& star, Complex move) const {
   for (const Corner& corner : star.corners) {
     const auto at = [&](Index h) { return position_[cut_mesh_.copy_of_corner[h]]; };
     const Index h = corner.halfedge;
-    sum += flatness(as_stored(at(h) + corner.turn * move), as_stored(at(next(h))), as_stored(at(prev(h))));
+    sum += flatness(at(h) + corner.turn * move, at(next(h)), at(prev(h)));
   }
   return sum;
 }

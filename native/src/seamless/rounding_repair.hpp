@@ -15,8 +15,8 @@ namespace lsgp {
 // As single precision stores it.
 Complex as_stored(Complex z);
 
-// Triangles of no area as stored, or a negative one.
-Array<Index> find_flipped_as_stored(const CutMesh& cut_mesh, const Eigen::VectorXcd& position);
+// Triangles of no area or a negative one, as stored or before: on some lattices not all copies can be stored exactly.
+Array<Index> find_flipped(const CutMesh& cut_mesh, const Eigen::VectorXcd& position);
 
 // A copy of a vertex, and its move for a move of the vertex's first copy by 1.
 struct MovingCopy {
@@ -49,6 +49,7 @@ class RoundingRepair {
 
   Star star_of(Index v) const;
   double flatness(Complex a, Complex b, Complex c) const;
+  double exact_flatness(Complex a, Complex b, Complex c) const;
   double flatness(Index f) const;
   double flatness(const Star& star, Complex move) const;
   bool keeps_axes(const Star& star, const PerHalfedge<char>& kept, Complex move) const;

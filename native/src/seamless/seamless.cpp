@@ -192,12 +192,12 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     const SeamlessComponent& component = components[i];
     ExactLayout exact(component, lattice, shift, component.map->position);
     const ComponentMap& map = *component.map;
-    const CutSurface surface = component.system->open(map.cut_graph, map.cut_mesh);
+    const auto surface = [&] { return component.system->open(map.cut_graph, map.cut_mesh); };
     if (search.relaxed(i).empty()) {  // otherwise no binary fractions satisfy all transitions
       exact.snap();
-      Array<Index> flipped = find_flipped_as_stored(map.cut_mesh, map.position);
+      Array<Index> flipped = find_flipped(map.cut_mesh, map.position);
       if (!flipped.empty()) {
-        exact.turn_upright(std::move(flipped), features_to_align(surface, options.straighten));
+        exact.turn_upright(std::move(flipped), features_to_align(surface(), options.straighten));
       }
     }
     if (const auto refusal = refusal_of(exact)) {
@@ -211,7 +211,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
       report.error = std::max(report.error, cut.error);
     }
     if (options.straighten && lattice.rotation_order() == 4) {
-      creases.add(*component.source, surface, map.position);
+      creases.add(*component.source, surface(), map.position);
     }
     area += component.system->geometry().total_area;
     before += component.system->geometry().total_area * search.energy(i);
