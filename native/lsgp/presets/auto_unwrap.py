@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..api import Solver, crease_borders
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
-from ..base.edge_keys import edge_keys
 from ..base.progress import Progress, share_of
 from ..errors import InputError
 from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
@@ -24,7 +23,7 @@ from ..results import Result
 from ..surface import Pins, Surface
 from .border_gains import BorderGain, FullerSquare, LessStretch
 from .completed_cones import CompletedCones, GivenCones, or_none
-from .components import Components
+from .components import Components, keys_of
 from .cone_choices import best_map, possible_cones
 from .map_comparison import fills_badly, may_replace_undivided
 
@@ -217,7 +216,7 @@ def crease_choices(
     if given.count is not None:
         return CreaseChoices(_ending_at(surface, required))
     possible = crease_borders(surface, given.cones, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
-    further = possible[~np.isin(_keys(possible, surface), _keys(required, surface))]
+    further = possible[~np.isin(keys_of(possible, surface), keys_of(required, surface))]
     return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
 
 
@@ -295,7 +294,7 @@ class _PossibleBorders:
 
     def not_in(self, surface: Surface) -> NDArray[np.intp]:
         """The components that do not end at all of theirs yet."""
-        is_new = ~np.isin(_keys(self.edges, surface), _keys(surface.borders, surface))
+        is_new = ~np.isin(keys_of(self.edges, surface), keys_of(surface.borders, surface))
         return np.unique(self.component[is_new])
 
     def of(self, components: NDArray[np.intp]) -> IndexArray:
@@ -327,10 +326,6 @@ def _gaining(
             return (opened, *found) if gain.may_replace(found[1], usual[2], end) else usual
         chosen = chosen[gains]
     return usual
-
-
-def _keys(edges: IndexArray, surface: Surface) -> NDArray[np.int64]:
-    return edge_keys(edges[:, 0], edges[:, 1], len(surface.positions))
 
 
 def _ending_at(surface: Surface, borders: IndexArray) -> Surface:

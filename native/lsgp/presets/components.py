@@ -43,9 +43,9 @@ class Components:
     def of_edges(self, edges: IndexArray) -> NDArray[np.intp]:
         """The component of each edge of the surface; edges: (e, 2)."""
         triangles = self.surface.triangles
-        sides = self._keys(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
+        sides = keys_of(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), self.surface)
         order = np.argsort(sides, kind="stable")
-        return self.of_triangle[order[np.searchsorted(sides, self._keys(edges), sorter=order)] // 3]
+        return self.of_triangle[order[np.searchsorted(sides, keys_of(edges, self.surface), sorter=order)] // 3]
 
     def lengths(self, edges: IndexArray) -> FloatArray:
         """The total length of those edges that each component has, (c,)."""
@@ -95,5 +95,7 @@ class Components:
         is_of_one = component >= 0
         return np.bincount(component[is_of_one], values[is_of_one], minlength=self.count)
 
-    def _keys(self, edges: IndexArray) -> NDArray[np.int64]:
-        return edge_keys(edges[:, 0], edges[:, 1], len(self.surface.positions))
+
+def keys_of(edges: IndexArray, surface: Surface) -> NDArray[np.int64]:
+    """The `edge_keys` of edges of a surface, (e, 2)."""
+    return edge_keys(edges[:, 0], edges[:, 1], len(surface.positions))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -118,104 +117,98 @@ def best_map(
     pins, progress, errors: as for `parameterize`.
     """
     symmetric, for_features = choices.symmetric, choices.for_features
+    maps = _Maps(solver, pins)
     share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
     stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
-        along = or_none(partial(for_features.parameterize, solver, options, pins, next(stages)))
-        if along is not None and not runs_along_features(along):
+        along = maps.attempt(for_features, options, next(stages))
+        if along is not None and not runs_along_features(along[1]):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
     # Those that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along)
+    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along and along[1])
     tried = options if is_chosen else replace(options, straighten=False)
-    best = choices.usual, choices.usual.parameterize(solver, tried, pins, next(stages))
+    best = maps.through(choices.usual, tried, next(stages))
     if symmetric is not None:
         # Comparing, and the map with other cuts, which few models need, have no time of their own.
         end = (2 + (for_features is not None)) * share
         mapping, still = next(stages), share_of(progress, end, end)
-        best = _best_symmetric(solver, symmetric, best, tried, pins, (mapping, still))
+        best = _best_symmetric(maps, symmetric, best, tried, (mapping, still))
     if along is not None:
-        best = _best_along(solver, (for_features, along), best, options, is_chosen, pins, next(stages))
+        best = _best_along(maps, along, best, options, is_chosen, next(stages))
     elif not is_chosen:
-        best = best[0], best[0].parameterize(solver, options, pins, next(stages))
+        best = maps.through(best[0], options, next(stages))
     return best[0], best[0].told(best[1], options)
 
 
+@dataclass(frozen=True, slots=True)
+class _Maps:
+    """Maps of one surface.  pins: of `best_map`"""
+
+    solver: Solver
+    pins: Pins | None
+
+    def through(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough:
+        return cones, cones.parameterize(self.solver, options, self.pins, progress)
+
+    def attempt(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough | None:
+        """None if the library refuses it."""
+        return or_none(partial(self.through, cones, options, progress))
+
+
 def _best_symmetric(
-    solver: Solver,
+    maps: _Maps,
     symmetric: CompletedCones,
     usual: MapThrough,
     options: Options,
-    pins: Pins | None,
     progress: tuple[Progress | None, Progress | None],
 ) -> MapThrough:
-    """The usual map, or one through symmetric cones if that costs little.  progress: of the first and the other maps"""
-    best = usual
-    may_replace = partial(may_replace_map, square_share=options.square_share, progress=progress[1])
-    for candidate in _symmetric_maps(solver, symmetric, usual, options, pins, progress):
-        result = candidate[1]
-        if may_replace(result, usual[1]) and (best is usual or may_replace(result, best[1])):
-            best = candidate
-    return best
-
-
-def _symmetric_maps(
-    solver: Solver,
-    symmetric: CompletedCones,
-    usual: MapThrough,
-    options: Options,
-    pins: Pins | None,
-    progress: tuple[Progress | None, Progress | None],
-) -> Iterator[MapThrough]:
-    """The map through symmetric cones, and where its symmetric cuts cost islands, one with other cuts that save them.
-
-    Arguments as of `_best_symmetric`.
-    """
-    usual_cones, plain = usual
-    mirrored = or_none(partial(symmetric.parameterize, solver, options, pins, progress[0]))
+    """The usual map, or one through symmetric cones if that costs little: with symmetric cuts, and where these cost
+    islands, with other cuts that save them.  progress: of the first map and of the other one"""
+    mirrored = maps.attempt(symmetric, options, progress[0])
     if mirrored is None:
-        return
-    yield symmetric, mirrored
-    has_other_cones = set(symmetric.cones.tolist()) != set(usual_cones.cones.tolist())
+        return usual
+    may_replace = partial(may_replace_map, square_share=options.square_share, progress=progress[1])
+    best = mirrored if may_replace(mirrored[1], usual[1]) else usual
+    has_other_cones = set(symmetric.cones.tolist()) != set(usual[0].cones.tolist())
     frees_cuts = not options.mirrored_cuts
-    if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored, plain)):
-        return
-    freed = replace(symmetric, is_symmetric=False)
-    free = or_none(partial(freed.parameterize, solver, options, pins, progress[1]))
-    if free is not None and saves_islands(free, mirrored, plain):
-        yield freed, free
+    if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored[1], usual[1])):
+        return best
+    free = maps.attempt(replace(symmetric, is_symmetric=False), options, progress[1])
+    if free is None or not saves_islands(free[1], mirrored[1], usual[1]) or not may_replace(free[1], usual[1]):
+        return best
+    return free if best is usual or may_replace(free[1], best[1]) else best
 
 
 def _best_along(
-    solver: Solver,
+    maps: _Maps,
     along: MapThrough,
     best: MapThrough,
     options: Options,
     is_straightened: bool,
-    pins: Pins | None,
     progress: Progress | None,
 ) -> MapThrough:
     """The map through cones for creases, the best other one, or one through cones of both, by component.
 
     is_straightened: whether the other one is made with the options, not without straight creases.
     """
-    surface = solver.surface
+    surface = maps.solver.surface
     components = Components.of(surface)
     is_other = _have_other_cones(components, along[0], best[0])
     gain = gains_features(components, along[1], best[1])
     if not (is_straightened or gain[is_other].all()):
         # Along creases the usual one is stretched as well.
-        best = best[0], best[0].parameterize(solver, options, pins, share_of(progress, 0.0, _TRYING))
+        best = maps.through(best[0], options, share_of(progress, 0.0, _TRYING))
         gain = gains_features(components, along[1], best[1])
     if gain[is_other].all():
         return along
     candidates = [along]
     if gain[is_other].any():
         cones = best[0].joined(along[0], surface, gain[components.of_vertex])
-        joint = or_none(partial(cones.parameterize, solver, options, pins, share_of(progress, _TRYING, 1.0)))
+        joint = maps.attempt(cones, options, share_of(progress, _TRYING, 1.0))
         if joint is not None:
-            candidates.insert(0, (cones, joint))
+            candidates.insert(0, joint)
     better = [candidate for candidate in candidates if may_replace_for_features(candidate[1], best[1])]
     return max([*better, best], key=lambda candidate: worth_along_features(candidate[1]))
 
