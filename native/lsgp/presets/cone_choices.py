@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 from .. import _lsgp
 from ..api import Solver
 from ..base.progress import Progress, share_of
+from ..errors import Elements, Finding
 from ..options import Options
 from ..results import Result
 from ..surface import Pins, Surface, surface_arrays
 from .completed_cones import CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
 from .map_comparison import (
+    feature_share,
     gains_features,
+    has_direction,
     may_replace_for_features,
     may_replace_map,
     mirrored_cuts_cost_islands,
@@ -139,6 +142,8 @@ def best_map(
         best = _best_along(maps, along, best, options, is_chosen, next(stages))
     elif not is_chosen:
         best = maps.through(best[0], options, next(stages))
+    if follows_features(solver.surface, options):
+        best = _without_creases(maps, best, options, share_of(progress, 1.0, 1.0))
     return best[0], best[0].told(best[1], options)
 
 
@@ -211,6 +216,24 @@ def _best_along(
             candidates.insert(0, joint)
     better = [candidate for candidate in candidates if may_replace_for_features(candidate[1], best[1])]
     return max([*better, best], key=lambda candidate: worth_along_features(candidate[1]))
+
+
+def _without_creases(maps: _Maps, along: MapThrough, options: Options, progress: Progress | None) -> MapThrough:
+    """The map, or the one in which no creases run along the lattice, where few of them can and tiles become larger."""
+    if not len(along[1].seamless.creases) or has_direction(along[1]):
+        return along
+    plain = maps.attempt(along[0], replace(options, straighten=False), progress)
+    if plain is None or worth_along_features(plain[1]) <= worth_along_features(along[1]):
+        return along
+    share, found = feature_share(along[1]), along[1].seamless
+    released = Finding(
+        "FEATURES_OFF_LATTICE",
+        f"No creases run along the lattice: only {100 * share:.0f} % of their length can, at an L2 stretch of "
+        f"{along[1].distortion.l2_stretch:.4g} and with tiles that are {found.tile_size:.3g} wide on the surface. Mark "
+        "as features those that have to.",
+        Elements("edges", found.creases),
+    )
+    return plain[0], replace(plain[1], warnings=[*plain[1].warnings, released])
 
 
 def _have_other_cones(components: Components, one: CompletedCones, other: CompletedCones) -> NDArray[np.bool_]:

@@ -60,6 +60,10 @@ _MANY_FEATURES = 0.9
 # Shares of features that are worth as much as L2 stretch of 1, and as tiles twice as large.
 _FEATURES_FOR_STRETCH = 2.5
 _FEATURES_FOR_TILES = 0.25
+# Where more creases than these are off the lattice, as on a coarse model of a round shape, the texture has no direction
+# in common with them, and those along it are worth half.
+_FEATURES_IN_COMMON = 0.75
+_WORTH_WITHOUT_DIRECTION = 0.5
 
 
 def may_replace_map(
@@ -188,11 +192,16 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     )
 
 
+def has_direction(result: Result) -> bool:
+    """Whether most creases of a seamless map run along its lattice, or others are marked as features."""
+    return result.features is not None or feature_share(result) >= _FEATURES_IN_COMMON
+
+
 def worth_along_features(result: Result) -> float:
     """By which seamless maps are compared: features along the lattice, little stretch, and large tiles everywhere."""
     is_uneven = any(finding.code == "HIGH_DISTORTION" for finding in result.warnings)
     return (
-        feature_share(result)
+        feature_share(result) * (1.0 if has_direction(result) else _WORTH_WITHOUT_DIRECTION)
         - _FEATURES_FOR_STRETCH * result.distortion.l2_stretch
         + _FEATURES_FOR_TILES * (np.log2(result.seamless.tile_size) - is_uneven)
     )

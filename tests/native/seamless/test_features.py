@@ -104,6 +104,23 @@ def test_open_components_without_features_get_no_cones_for_them() -> None:
     assert len(cones) == 8
 
 
+@pytest.mark.parametrize("mesh", [closed.noise_sphere(1, 0.25, 1), closed.noise_sphere(2, 0.15, 1)])
+def test_creases_of_coarse_round_shapes_do_not_make_tiles_small(mesh: Mesh) -> None:
+    """They are as sharp as those of hard surfaces, but lead everywhere: a third of them could not be along it."""
+    given = surface(mesh)
+    result, plain = (lsgp.auto_unwrap(given, preset="tile", options=each) for each in (TILE, PLAIN))
+    along = lsgp.parameterize(given, result.cones, result.cone_angles, TILE)
+    np.testing.assert_array_equal(result.corner_uv, plain.corner_uv)
+    assert 0.5 < along.seamless.feature_share < 0.75
+    assert along.seamless.tile_size < result.seamless.tile_size / 2
+    assert along.distortion.l2_stretch > result.distortion.l2_stretch
+    told = only(result.warnings, "FEATURES_OFF_LATTICE")
+    np.testing.assert_array_equal(told.elements.indices, along.seamless.creases)
+    assert f"only {100 * along.seamless.feature_share:.0f} %" in told.message
+    marked = replace(given, features=lsgp.feature_edges(given, angle=SHARP))
+    assert lsgp.auto_unwrap(marked, preset="tile").features.share > 0.25
+
+
 SOFT = [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1), closed.noise_sphere(3, 0.04, 1)]
 
 
