@@ -658,7 +658,11 @@ PYBIND11_MODULE(_lsgp, module) {
   define_mesh_text(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
-      .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)
+      .def(py::init([](const SurfaceArrays& surface, const lsgp::Solver* earlier) {
+             return earlier == nullptr ? lsgp::Solver(to_surface(surface))
+                                       : lsgp::Solver(to_surface(surface), *earlier);
+           }),
+           "surface"_a, "earlier"_a)
       .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a)
       .def("place_cones", &place_cones_again, "cones"_a, "options"_a, "progress"_a);
   py::class_<lsgp::GrabbedCut>(module, "GrabbedCut")

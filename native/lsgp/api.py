@@ -69,12 +69,18 @@ class Solver:
     that `place_cones` has placed. Angles and all options except `seams`, `border` and `factorization`, including those
     of seamless layouts, can then change without a new factorization. A seamless layout that differs from the previous
     one only in the size of its tiles takes only their rounding: the map, and which creases run along the lattice, are
-    kept. The map is kept, too, if only `straighten` differs.
+    kept. The map is kept, too, if only `straighten` differs. The latest few placements on each component are kept, and
+    so are its maps that are seamless or split; they serve calls that differ on other components.
     A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
+
+    surface: the one to parameterize. earlier: solver of a similar surface, as with other borders: what either finds on
+        components that are the same on both serves the other as well. Both are busy during a call of one of them.
     """
 
-    def __init__(self, surface: Surface) -> None:
-        self._solver = _lsgp.Solver(surface_arrays(surface))
+    def __init__(self, surface: Surface, earlier: Solver | None = None) -> None:
+        if earlier is not None:
+            arguments.require_type("earlier", earlier, Solver)
+        self._solver = _lsgp.Solver(surface_arrays(surface), None if earlier is None else earlier._solver)
         self._surface = surface
 
     @property

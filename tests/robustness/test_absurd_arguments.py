@@ -51,7 +51,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Options": (lsgp.Options, vars(lsgp.Options()) | {"loop_turning": {0: 1.0}}),
     "Seamless": (lsgp.Seamless, vars(lsgp.Seamless(tiles=12))),
     "parameterize": (lsgp.parameterize, CALL | {"pins": lsgp.Pins([0, 5], [[0, 0], [1, 0]])}),
-    "Solver": (lsgp.Solver, {"surface": WHOLE}),
+    "Solver": (lsgp.Solver, {"surface": WHOLE, "earlier": lsgp.Solver(WHOLE)}),
     "Solver.parameterize": (
         lsgp.Solver(WHOLE).parameterize,
         {name: CALL[name] for name in CALL if name != "surface"} | {"pins": None},

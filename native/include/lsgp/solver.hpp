@@ -22,6 +22,9 @@ namespace lsgp {
 class LSGP_API Solver {
  public:
   explicit Solver(Surface surface);
+  // What the earlier one, or those it has it from, found on components that are the same on this surface, as where only
+  // other borders differ, is used here, and the other way round. Both are busy during a call of either.
+  Solver(Surface surface, const Solver& earlier);
   ~Solver();
   Solver(Solver&&) noexcept;
 

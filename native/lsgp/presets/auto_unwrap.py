@@ -230,7 +230,7 @@ class Solvers:
         for solver in self._known:
             if solver.surface is surface:
                 return solver
-        self._known.append(Solver(surface))
+        self._known.append(Solver(surface, self._known[-1] if self._known else None))
         return self._known[-1]
 
 

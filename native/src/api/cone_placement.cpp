@@ -45,8 +45,13 @@ class PlacementWork {
   ProgressMonitor& monitor() { return monitor_; }
 
   void keep_system(const Component& component, KeptSystem system) {
-    kept_.keep_system(static_cast<std::size_t>(&component - components().data()), std::move(system));
+    kept_.keep_system(number(component), std::move(system));
   }
+  // Null if none are kept.
+  ComponentResults* results(const Component& component) {
+    return kept_.keeps() ? &kept_.results(number(component)) : nullptr;
+  }
+  const Mirroring& mirroring_of(const Component& component) { return kept_.mirroring_of(number(component)); }
 
   // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
   template <typename Visit>
@@ -73,6 +78,10 @@ class PlacementWork {
   }
 
  private:
+  std::size_t number(const Component& component) const {
+    return static_cast<std::size_t>(&component - kept_.work().topology.components.data());
+  }
+
   Eigen::Index triangles_;
   KeptComponents& kept_;
   std::vector<Finding>& findings_;
@@ -96,17 +105,35 @@ struct PlacementRules {
   ProgressMonitor& monitor;
 };
 
-PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
-                     std::vector<Finding>& findings) {
-  if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
+PlacedCones place_alone(const PlacementTask& task, const Positions& directions, const PlacementRules& rules,
+                        std::vector<Finding>& findings) {
   PlacedCones found = place_component(task, rules.options, findings, rules.monitor);
-  if (rules.surface.directions.rows() > 0 && rules.options.lattice && !rules.options.count) {
-    const Positions directions = directions_on(component, rules.surface.directions);
-    auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
-    if (beside) found = std::move(*beside);
+  if (directions.rows() == 0) return found;
+  auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
+  return beside ? std::move(*beside) : std::move(found);
+}
+
+// results: of the component, or null.
+PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
+                     ComponentResults* results, std::vector<Finding>& findings) {
+  if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
+  const bool is_directed = rules.surface.directions.rows() > 0 && rules.options.lattice && !rules.options.count;
+  PlacementInput input{task.existing, task.allowed, task.mirrored, {}, rules.options};
+  if (is_directed) input.directions = directions_on(component, rules.surface.directions);
+  PlacedCones placed;
+  const PlacementResult* known = results == nullptr ? nullptr : results->find_placement(input);
+  if (known != nullptr) {
+    static_cast<ConePlacement&>(placed) = known->placed;
+    findings.insert(findings.end(), known->found.begin(), known->found.end());
+  } else {
+    const auto before = static_cast<std::ptrdiff_t>(findings.size());
+    placed = place_alone(task, input.directions, rules, findings);
+    if (results != nullptr) {
+      results->keep_placement(std::move(input), {placed, {findings.begin() + before, findings.end()}});
+    }
   }
-  rules.twins.keep(component, task, found);
-  return found;
+  rules.twins.keep(component, task, placed);
+  return placed;
 }
 
 // A vertex has one angle in the result, even if different ones are best on the components that touch there.
@@ -141,12 +168,16 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const PerVertex<char>& allowed, std::vector<Finding>& findings) {
     PerVertex<Index> mirrored;
-    if (options.symmetric) mirrored = find_mirror_images({component.mesh, geometry}, plane).image;
+    if (options.symmetric) {
+      mirrored =
+          plane ? find_mirror_images({component.mesh, geometry}, plane).image : work.mirroring_of(component).image;
+    }
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
     }
     const PlacementTask task{{component.mesh, geometry}, cones, allowed, mirrored};
-    PlacedCones found = place_on(component, task, {surface, options, twins, work.monitor()}, findings);
+    PlacedCones found =
+        place_on(component, task, {surface, options, twins, work.monitor()}, work.results(component), findings);
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];

@@ -29,6 +29,7 @@ using ComponentMaps = PerComponent<std::optional<ComponentMap>>;  // none of tho
 struct MappedComponents {
   PerComponent<ComponentTask> tasks;  // seamless layouts merge cones
   ComponentMaps maps;
+  PerComponent<MapResult*> results;  // where they are kept
 };
 
 // Puts the maps onto a lattice, and takes away those of components that cannot be.
@@ -40,7 +41,8 @@ void quantize(KeptComponents& kept, const Options& options, MappedComponents& ma
   Array<SeamlessComponent> laid_out;
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (mapped.maps[i])
-      laid_out.push_back({&components[i], &mapped.tasks[i], &*mapped.maps[i], kept.system(i), &kept.alignment(i)});
+      laid_out.push_back(
+          {&components[i], &mapped.tasks[i], &*mapped.maps[i], kept.system(i), &mapped.results[i]->alignment});
   }
   result.seamless = make_seamless(options, work.unit_scale, laid_out, result.warnings, monitor);
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -65,7 +67,6 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     const ProgressMonitor::Stage stage(monitor, "topology");
     kept.update(
         [&](Work earlier) { return prepare({surface, cones, options}, result.warnings, pins, std::move(earlier)); });
-    kept.keep_maps_of(cones, options);
   }
   Work& work = kept.work();
   const PerComponent<Component>& components = work.topology.components;
@@ -73,11 +74,12 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   constexpr double share_of_rounding = 0.5;
   const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
   Index triangles_before = 0;
-  MappedComponents mapped{{}, ComponentMaps(components.size())};
-  // A seamless layout is split later, before its islands are put onto the lattice; pins are not compared.
-  const bool keeps_split = options.overlaps == Overlaps::split && !options.seamless && pins.corners.empty();
-  PerComponent<std::optional<KeptMap>> unkept(components.size());
-  PerComponent<std::optional<KeptMap>>& split = keeps_split ? kept.split_maps_of(cones, options) : unkept;
+  MappedComponents mapped{{}, ComponentMaps(components.size()), PerComponent<MapResult*>(components.size())};
+  // Of seamless layouts before they are split, which they are before their islands are put onto the lattice. Others are
+  // computed fast, and copied often while a cone is dragged.
+  const bool keeps_maps =
+      kept.keeps() && (options.seamless || options.overlaps == Overlaps::split) && pins.corners.empty();
+  PerComponent<MapResult> unkept(components.size());
   PerComponent<std::vector<Finding>> found(components.size());  // about the maps
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
@@ -96,13 +98,14 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     }
     ComponentSystem& system = kept.system_of(i, options.factorization);
     ComponentMap map;
-    const std::optional<KeptMap>& known = keeps_split ? split[i] : kept.map(i);
-    if (known) {
+    MapResult& result_of_map = keeps_maps ? kept.results(i).of_map(task, options) : unkept[i];
+    mapped.results[i] = &result_of_map;
+    if (const auto& known = result_of_map.map) {
       map = known->map;
       found[i] = known->found;
     } else {
       map = map_component(system, task, options, found[i], monitor);
-      if (options.seamless) kept.keep_map(i, map, found[i]);
+      if (keeps_maps && options.seamless) result_of_map.map = KeptMap{map, found[i]};
     }
     kept.release(i);
     if (options.seamless) require_quantizable(component.mesh, map);
@@ -123,7 +126,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (!mapped.maps[i]) continue;
     KeptMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
-    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), split[i]);
+    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), mapped.results[i]->map);
   }
   assembly.require_any();
   assembly.finish(cones, work.topology.duplicates);
@@ -136,8 +139,9 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
 }  // namespace
 
 struct Solver::Kept {
-  KeptComponents components{true};
-  std::atomic<bool> is_busy{false};
+  Array<std::shared_ptr<const KeptComponents>> earlier;
+  std::shared_ptr<KeptComponents> components = std::make_shared<KeptComponents>(earlier);
+  std::shared_ptr<std::atomic<bool>> is_busy = std::make_shared<std::atomic<bool>>(false);
 };
 
 namespace {
@@ -162,20 +166,25 @@ class Turn {
 }  // namespace
 
 Solver::Solver(Surface surface) : surface_(std::move(surface)), kept_(std::make_unique<Kept>()) {}
+Solver::Solver(Surface surface, const Solver& earlier) : surface_(std::move(surface)) {
+  Array<std::shared_ptr<const KeptComponents>> all = earlier.kept_->earlier;
+  all.push_back(earlier.kept_->components);
+  kept_ = std::make_unique<Kept>(Kept{all, std::make_shared<KeptComponents>(all), earlier.kept_->is_busy});
+}
 Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 
 Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins,
                             const Progress& progress) try {
-  const Turn turn(kept_->is_busy);
-  return map_components({surface_, kept_->components}, cones, options, pins, progress);
+  const Turn turn(*kept_->is_busy);
+  return map_components({surface_, *kept_->components}, cones, options, pins, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }
 
 Placement Solver::place_cones(const Cones& existing, const PlacementOptions& options, const Progress& progress) try {
-  const Turn turn(kept_->is_busy);
-  return place_cones_on({surface_, kept_->components}, existing, options, progress);
+  const Turn turn(*kept_->is_busy);
+  return place_cones_on({surface_, *kept_->components}, existing, options, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }

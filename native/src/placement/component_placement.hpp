@@ -14,13 +14,16 @@
 namespace lsgp {
 
 // One component's cones and their measurements.
-struct PlacedCones {
+struct ConePlacement {
   ComponentCones cones;  // existing ones first, all with angles
   Curvature curvature;
   double mapped_l2 = 1;  // of the map, infinite where it is not valid
   int maps = 0;          // that were made
   std::optional<MissingCones> missing;
   bool reached = true;
+};
+
+struct PlacedCones : ConePlacement {
   KeptSystem system;  // of the cones; none if the latest map was not theirs
 };
 

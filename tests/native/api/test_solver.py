@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -281,6 +282,18 @@ def stops_after(calls: int) -> Callable[[float], bool]:
     return lambda done: next(left, None) is not None
 
 
+def linked_solvers(first: lsgp.Surface, *others: lsgp.Surface) -> list[lsgp.Solver]:
+    solvers = [lsgp.Solver(first)]
+    for surface in others:
+        solvers.append(lsgp.Solver(surface, solvers[-1]))
+    return solvers
+
+
+def around_triangle(mesh: meshes.Mesh, triangle: int) -> np.ndarray:
+    a, b, c = mesh.triangles[triangle]
+    return np.array([[a, b], [b, c], [c, a]])
+
+
 CHANGES: dict[str, list[object]] = {
     "prescription": [None, "harmonic", "straightness"],
     "unfold": ["poisson", "spectral"],
@@ -298,6 +311,8 @@ CHANGES: dict[str, list[object]] = {
     "stretch": [1.0, 0.5],
     "repair": [True, False],
     "overlaps": ["keep", "split"],
+    "compact": ["off", "full"],
+    "mirrored_cuts": [False, True],
     "factorization": ["automatic", "cut", "sparse"],
     "loop_turning": [{}, {0: 2 * np.pi}],
 }
@@ -312,10 +327,16 @@ def test_any_sequence_of_calls_is_that_of_fresh_starts(seed: int) -> None:
     surface = lsgp.Surface(
         mesh.positions, mesh.triangles, seams=rng.choice(edges, len(edges) // 6, replace=False), importance=weights
     )
-    solver = lsgp.Solver(surface)
+    solvers = linked_solvers(
+        surface,
+        dataclasses.replace(surface, borders=around_triangle(mesh, 0)),
+        dataclasses.replace(surface, borders=around_triangle(mesh, len(mesh.triangles) - 1), features=edges[:20]),
+        dataclasses.replace(surface, directions=rng.random((len(mesh.triangles), 3))),
+    )
     options, cones, angles, pins = lsgp.Options(), mesh.cones, None, None
     solved = 0
-    for _ in range(60):
+    for _ in range(80):
+        solver = solvers[0 if rng.random() < 0.5 else rng.integers(len(solvers))]
         # One thing is changed at a time, or all are changed back.
         what = rng.choice([*CHANGES, "cones", "cones", "angles", "pins", "cancel", *["all"] * 3])
         if what == "cones":
@@ -339,9 +360,47 @@ def test_any_sequence_of_calls_is_that_of_fresh_starts(seed: int) -> None:
             options, cones, angles, pins = lsgp.Options(), mesh.cones, None, None
         call = (cones, angles, options, pins)
         found = outcome(solver.parameterize, *call)
-        assert found == outcome(lsgp.parameterize, surface, *call), (what, options)
+        assert found == outcome(lsgp.parameterize, solver.surface, *call), (what, options)
         solved += isinstance(found, str)
+        if rng.random() < 0.2:
+            count, is_symmetric = [None, 0, 4][rng.integers(3)], bool(rng.integers(2))
+            placing = {"count": count, "symmetric": is_symmetric, "seams": options.seams}
+            placed = outcome(functools.partial(solver.place_cones, **placing))
+            assert placed == outcome(functools.partial(lsgp.place_cones, solver.surface, **placing)), placing
     assert solved > 10
+
+
+@pytest.mark.parametrize("options", [lsgp.Options(overlaps="split"), lsgp.Options(seamless=lsgp.Seamless())])
+def test_components_that_a_border_leaves_as_they_are_are_solved_once(options: lsgp.Options) -> None:
+    sphere, flower = meshes.bumpy_sphere(2), meshes.flower(2)
+    both = meshes.merge([sphere, flower])
+    surface = surface_of(both)
+    opened = dataclasses.replace(surface, borders=around_triangle(both, 0))
+    first, second = linked_solvers(surface, opened)
+    placed = first.place_cones()
+    first.parameterize(placed.cones, placed.cone_angles, options)
+    again = second.place_cones()
+    assert 0 < again.factorizations < lsgp.place_cones(opened).factorizations
+    assert_same_placement(again, lsgp.place_cones(opened))
+    given = again.cones, again.cone_angles, options
+    result = second.parameterize(*given)
+    assert result.factorizations < lsgp.parameterize(opened, *given).factorizations
+    assert_same(result, lsgp.parameterize(opened, *given))
+
+
+def test_linked_solvers_are_busy_together() -> None:
+    mesh = meshes.bumpy_sphere()
+    surface = surface_of(mesh)
+    first, second = linked_solvers(surface, dataclasses.replace(surface, borders=around_triangle(mesh, 0)))
+    refusals = []
+
+    def call_other(done: float) -> None:
+        with pytest.raises(lsgp.SolverError) as refused:
+            first.parameterize(mesh.cones)
+        refusals.append(refused.value.code)
+
+    second.parameterize(mesh.cones, progress=call_other)
+    assert refusals and set(refusals) == {"SOLVER_BUSY"}
 
 
 def test_call_from_its_own_progress_is_refused_and_leaves_the_outer_one_as_it_is() -> None:
