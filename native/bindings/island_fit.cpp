@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 namespace {
 
-using Floats = py::array_t<float, py::array::c_style>;
+using Numbers = py::array_t<double, py::array::c_style>;
 using Indices = py::array_t<std::int32_t, py::array::c_style>;
 using Word = std::uint64_t;
 
@@ -54,6 +54,7 @@ class Bits {
   std::vector<Word> bits_;
 };
 
+// In single precision, as xatlas computes.
 struct Point {
   float x, y;
 };
@@ -242,14 +243,15 @@ bool fit(std::vector<Island>& islands, int inside, int padding) {
 // Whether xatlas, which takes ten times as long, finds a place for all islands; rounding aside, it always agrees.
 // corners: (t, 3, 2), in texels. island: (t), those of one island one after another. inside: texels of the square
 // without its margin. padding: texels around each island.
-bool islands_fit(const Floats& corners, const Indices& island, int inside, int padding) {
+bool islands_fit(const Numbers& corners, const Indices& island, int inside, int padding) {
   const auto place = corners.unchecked<3>();
   const auto owner = island.unchecked<1>();
   std::vector<Island> islands;
   for (py::ssize_t t = 0; t < owner.shape(0); ++t) {
     if (t == 0 || owner(t) != owner(t - 1)) islands.emplace_back();
     Triangle triangle{};
-    for (py::ssize_t k = 0; k < 3; ++k) triangle[static_cast<std::size_t>(k)] = {place(t, k, 0), place(t, k, 1)};
+    for (py::ssize_t k = 0; k < 3; ++k)
+      triangle[static_cast<std::size_t>(k)] = {static_cast<float>(place(t, k, 0)), static_cast<float>(place(t, k, 1))};
     islands.back().triangles.push_back(triangle);
   }
   const py::gil_scoped_release without_gil;

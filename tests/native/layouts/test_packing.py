@@ -15,9 +15,8 @@ import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
 from lsgp import TexelLayout
-from lsgp.layouts import packing
 from lsgp.layouts.island_gaps import least_gap
-from lsgp.layouts.layout_search import best_layout
+from lsgp.layouts.layout_search import LayoutSearch
 from map_checks import codes, surface
 from other_process import in_another_process
 
@@ -254,12 +253,13 @@ def test_margins_that_leave_no_room_are_refused(packer) -> None:
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPatch, preset: str) -> None:
     packed = []
+    best = LayoutSearch.best
 
-    def counted(islands: object, *how: object) -> object:
-        packed.append(islands)
-        return best_layout(islands, *how)
+    def counted(self: LayoutSearch, *how: object) -> object:
+        packed.append(self)
+        return best(self, *how)
 
-    monkeypatch.setattr(packing, "best_layout", counted)
+    monkeypatch.setattr(LayoutSearch, "best", counted)
     given = surface(meshes.flower(3))
     shelves = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
     compared = len(packed)
