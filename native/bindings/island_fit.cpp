@@ -60,9 +60,18 @@ struct Point {
 };
 using Triangle = std::array<Point, 3>;
 
+// Texels of a row, from `begin` up to `end`, of which 2^level, the most that is not more than they are, are looked up
+// at once.
 struct Span {
   int row, begin, end;
+  std::size_t level;
 };
+
+std::size_t level_of(int length) {
+  std::size_t level = 0;
+  while (length >> (level + 1)) ++level;
+  return level;
+}
 
 // An island as xatlas has it: each side stretched to whole texels.
 struct Island {
@@ -132,7 +141,7 @@ std::vector<Span> spans_of(const Island& island, int padding) {
       const bool is_taken = taken[static_cast<std::size_t>(column / word_bits)] >> (column % word_bits) & 1;
       if (is_taken && begin < 0) begin = column;
       if (is_taken || begin < 0) continue;
-      spans.push_back({row, begin, column});
+      spans.push_back({row, begin, column, level_of(column - begin)});
       begin = -1;
     }
   }
@@ -140,17 +149,10 @@ std::vector<Span> spans_of(const Island& island, int padding) {
   return spans;
 }
 
-int level_of(int length) {
-  int level = 0;
-  while (length >> (level + 1)) ++level;
-  return level;
-}
-
 // The texels of the square that are taken, and, level by level, whether any of the 1, 2, 4, … from one on is.
 class Square {
  public:
-  explicit Square(int side)
-      : side_(side), levels_(static_cast<std::size_t>(level_of(side)) + 1, Bits(side, 2 * side)) {}
+  explicit Square(int side) : side_(side), levels_(level_of(side) + 1, Bits(side, 2 * side)) {}
 
   void take(const std::vector<Span>& spans, int x, int y) {
     for (const Span& span : spans) levels_[0].set(y + span.row, x + span.begin, x + span.end);
@@ -170,9 +172,9 @@ class Square {
     for (; column <= last; column += word_bits) {
       Word taken = 0;
       for (const Span& span : spans) {
-        const int length = span.end - span.begin, level = level_of(length);
-        const Bits& any = levels_[static_cast<std::size_t>(level)];
-        taken |= any.from(y + span.row, column + span.begin) | any.from(y + span.row, column + span.end - (1 << level));
+        const Bits& any = levels_[span.level];
+        const int row = y + span.row, from = column + span.begin, until = column + span.end;
+        taken |= any.from(row, from) | any.from(row, until - (1 << span.level));
         if (taken == all_ones) break;
       }
       if (taken == all_ones) continue;
