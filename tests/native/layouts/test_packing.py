@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
 from lsgp import TexelLayout
+from lsgp.layouts import packing
 from lsgp.layouts.island_gaps import least_gap
 from lsgp.layouts.layout_search import LayoutSearch
 from map_checks import codes, surface
@@ -268,6 +269,21 @@ def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPa
     assert len(packed) == 2 * compared
     assert (result.corner_uv == lsgp.pack_islands(shelves.corner_uv, shelves.island)).all()
     assert len(packed) == 2 * compared + 1  # nothing is kept from one call to the next
+
+
+def test_a_search_goes_on_from_quarter_turns_as_if_it_began(packer) -> None:
+    given = on_shelves("bake")
+    how = given.corner_uv, given.island
+    with packing.packing_once():
+        with pytest.raises(lsgp.Cancelled):
+            lsgp.pack_islands(*how, turned="quarters", progress=lambda done: done < 0.2)
+        together = [lsgp.pack_islands(*how, turned=turned) for turned in ("quarters", True, "quarters")]
+        told: list[float] = []
+        lsgp.pack_islands(*how, margin=0.01, turned="quarters")
+        lsgp.pack_islands(*how, margin=0.01, progress=told.append)
+    assert told == sorted(told) and told[0] > 0.5 and told[-1] == 1
+    for turned, packed in zip(("quarters", True, "quarters"), together, strict=True):
+        assert np.array_equal(packed, lsgp.pack_islands(*how, turned=turned), equal_nan=True)
 
 
 def test_progress_is_told_and_stops_it(packer) -> None:
