@@ -110,15 +110,12 @@ void draw(const Triangle& triangle, int padding, Bits& texels) {
       const auto& tail = corner[k];
       const auto& head = corner[(k + 1) % 3];
       const double below = std::max(std::min(tail[1], head[1]), static_cast<double>(row));
-      const double above = std::min(std::max(tail[1], head[1]), row + 1.0);
+      const double above = std::min(std::max(tail[1], head[1]), row + 1.0), rise = head[1] - tail[1];
       if (below > above) continue;
-      for (const double y : {below, above}) {
-        const double rise = head[1] - tail[1];
-        for (const double share : {rise == 0 ? 0.0 : (y - tail[1]) / rise, rise == 0 ? 1.0 : (y - tail[1]) / rise}) {
-          const double x = tail[0] + share * (head[0] - tail[0]);
-          left = std::min(left, x);
-          right = std::max(right, x);
-        }
+      for (const double share : {rise == 0 ? 0 : (below - tail[1]) / rise, rise == 0 ? 1 : (above - tail[1]) / rise}) {
+        const double x = tail[0] + share * (head[0] - tail[0]);
+        left = std::min(left, x);
+        right = std::max(right, x);
       }
     }
     if (left < right) texels.set(row, static_cast<int>(left) - padding, static_cast<int>(std::ceil(right)) + padding);
