@@ -10,6 +10,7 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "island_fit.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh_text.hpp"
 
@@ -656,6 +657,7 @@ PYBIND11_MODULE(_lsgp, module) {
   });
   using py::literals::operator""_a;
   define_mesh_text(module);
+  define_island_fit(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface, const lsgp::Solver* earlier) {

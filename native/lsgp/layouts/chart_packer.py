@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _lsgp
 from ..errors import InputError
 from .coarse_islands import coarse_triangles, doubled_areas
 from .island_gaps import ComplexArray, Indices, least_gap
@@ -239,13 +240,16 @@ class Packer:
 
 def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
     """(n,), where xatlas puts vertices, in texels; None if they do not fit into the square."""
+    positions = np.stack([charts.place.real, charts.place.imag], axis=1)
+    owner = charts.island[charts.triangles[:, :1]]
+    # Most layouts that are looked for are not there, which xatlas finds out at ten times the cost.
+    if not _lsgp.islands_fit(positions[charts.triangles], owner.ravel().astype(np.int32), inside, padding):
+        return None
     xatlas = find_xatlas()
     others = _threads()
     atlas = xatlas.Atlas()
-    positions = np.stack([charts.place.real, charts.place.imag], axis=1).astype(np.float32)
     # As if each island had a material of its own, or those with corners at the same place would be one.
-    materials = charts.island[charts.triangles[:, :1]].astype(np.uint32)
-    atlas.add_uv_mesh(positions, charts.triangles.astype(np.uint32), materials)
+    atlas.add_uv_mesh(positions.astype(np.float32), charts.triangles.astype(np.uint32), owner.astype(np.uint32))
     options = xatlas.PackOptions()
     options.resolution, options.padding, options.texels_per_unit = inside, padding, 1.0
     options.bruteForce, options.bilinear, options.blockAlign = True, False, False

@@ -21,7 +21,7 @@ Indices = NDArray[np.int64]
 _PAIRS_AT_ONCE = 1 << 20
 # Of the layout's size: no cell is made smaller, so that there are not too many pieces.
 _SMALLEST_CELL = 1 / 512
-_CELLS_IN_REACH = 8
+_CELLS_IN_REACH = 2
 
 
 def border_edges(vertices: Indices) -> tuple[Indices, Indices]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from ..base.progress import Progress
 from ..errors import Cancelled
 from ..triangles import uv_area
 from .chart_packer import Islands, Layout, Packer, Square
-from .island_gaps import border_edges
+from .island_gaps import ComplexArray, border_edges
 
 # Whether islands may be turned, or by quarters alone.
 Turned = bool | Literal["quarters"]
@@ -57,50 +57,67 @@ def islands_of(uv: FloatArray, island: IndexArray) -> Islands:
     )
 
 
-def best_layout(islands: Islands, square: Square, may_turn: Turned, progress: Progress | None) -> Layout:
-    """The smallest of the layouts tried.  Raises InputError, Cancelled.
-
-    may_turn: True: islands that lie along the axes, as straight sides do, are turned by quarters as well, unless that
-        leaves most of the square empty.
+class LayoutSearch:
+    """Looks for the smallest layout of islands.  Those turned by quarters are looked for once: maps are compared so
+    turned, and then the chosen one is packed with any turns, of which quarters are tried first.
     """
-    count = islands.count
-    middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
-    tries = middle if may_turn else 1
-    if may_turn is True:
-        is_aligned, sides = lie_along_axes(islands), sides_when_turned(islands)
-        squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
-        tries += 2 if is_aligned.all() else free
-    packer = Packer(islands, square)
-    # The generator whose numbers never change with the version of numpy.
-    random = np.random.RandomState(0)
-    best: Layout | None = None
-    turns = best_turns = np.ones(count, np.complex128)
-    for number in range(tries):
-        if progress is not None and progress(number / tries) is False:
-            raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
-        shorter = 1.0
-        if number == middle:
-            turns = np.where(is_aligned, best_turns, squarest)
-        elif number == middle + 1 and islands.area < HARDLY_FILLED * best.side**2:
-            turns, shorter = squarest, SHORTER_UNALIGNED
-        elif number == 1:
-            turns = np.full(count, 1j)
-        elif number > 1:
-            # Half of the first ones from the best so far, of which some islands are turned, and all of the others.
-            kept = random.random_sample(count) < _KEPT if number % 2 or number > middle else np.zeros(count, bool)
-            further = _QUARTER_TURNS[random.randint(0, 4, count)]
-            if number > middle:
-                kept[random.randint(count)] = False
-                fits = sides < best.side * (1 - 2 * square.share(best.side))
-                direction = _DIRECTIONS[(random.random_sample(sides.shape) * fits).argmax(axis=0)]
-                further = np.where(is_aligned, further, direction * further)
-            turns = np.where(kept, best_turns, further)
-        found = packer.improved(turns, best, shorter)
-        if found is not None:
-            best, best_turns = found, turns
-    if progress is not None:
-        progress(1.0)
-    return best
+
+    def __init__(self, islands: Islands, square: Square) -> None:
+        self.islands, self._square = islands, square
+        self._packer = Packer(islands, square)
+        # The best layout, its turns, and where the random numbers stand.
+        self._by_quarters: tuple[Layout, ComplexArray, Any] | None = None
+
+    def best(self, may_turn: Turned, progress: Progress | None) -> Layout:
+        """The smallest of the layouts tried.  Raises InputError, Cancelled.
+
+        may_turn: True: islands that lie along the axes, as straight sides do, are turned by quarters as well, unless
+            that leaves most of the square empty.
+        """
+        count = self.islands.count
+        middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
+        tries = middle if may_turn else 1
+        if may_turn is True:
+            is_aligned, sides = lie_along_axes(self.islands), sides_when_turned(self.islands)
+            squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
+            tries += 2 if is_aligned.all() else free
+        # The generator whose numbers never change with the version of numpy.
+        random = np.random.RandomState(0)
+        best: Layout | None = None
+        turns = best_turns = np.ones(count, np.complex128)
+        begin = 0
+        if may_turn and self._by_quarters is not None:
+            best, best_turns, numbers = self._by_quarters
+            random.set_state(numbers)
+            begin = middle
+        for number in range(begin, tries):
+            if progress is not None and progress(number / tries) is False:
+                raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
+            shorter = 1.0
+            if number == middle:
+                turns = np.where(is_aligned, best_turns, squarest)
+            elif number == middle + 1 and self.islands.area < HARDLY_FILLED * best.side**2:
+                turns, shorter = squarest, SHORTER_UNALIGNED
+            elif number == 1:
+                turns = np.full(count, 1j)
+            elif number > 1:
+                # Half of the first ones from the best so far, of which some islands are turned, and all of the others.
+                kept = random.random_sample(count) < _KEPT if number % 2 or number > middle else np.zeros(count, bool)
+                further = _QUARTER_TURNS[random.randint(0, 4, count)]
+                if number > middle:
+                    kept[random.randint(count)] = False
+                    fits = sides < best.side * (1 - 2 * self._square.share(best.side))
+                    direction = _DIRECTIONS[(random.random_sample(sides.shape) * fits).argmax(axis=0)]
+                    further = np.where(is_aligned, further, direction * further)
+                turns = np.where(kept, best_turns, further)
+            found = self._packer.improved(turns, best, shorter)
+            if found is not None:
+                best, best_turns = found, turns
+            if number == middle - 1:
+                self._by_quarters = best, best_turns, random.get_state()
+        if progress is not None:
+            progress(1.0)
+        return best
 
 
 def lie_along_axes(islands: Islands) -> NDArray[np.bool_]:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from typing import Any, Literal, get_args
 
@@ -22,7 +22,7 @@ from ..errors import Cancelled, Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
 from .chart_packer import Square, find_xatlas
-from .layout_search import Turned, best_layout, islands_of
+from .layout_search import LayoutSearch, Turned, islands_of
 from .stacking import find_stacks
 from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
 from .udim_packing import spread_over_tiles
@@ -36,8 +36,16 @@ DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
 
 
-# By digests of what was packed and how; None: they are not kept.
-_kept_layouts: ContextVar[dict[bytes, FloatArray] | None] = ContextVar("kept_layouts", default=None)
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """What was found, by digests of what was packed, and how."""
+
+    layouts: dict[tuple[object, ...], FloatArray] = field(default_factory=dict)
+    searches: dict[tuple[object, ...], LayoutSearch] = field(default_factory=dict)
+
+
+# None: nothing is kept.
+_kept: ContextVar[_Kept | None] = ContextVar("kept", default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,13 +111,13 @@ def require_packer() -> None:
 
 @contextmanager
 def packing_once() -> Iterator[None]:
-    """Within it, islands that were packed in the same way before are not packed again: maps are packed to be compared,
-    and the chosen one once more as the result."""
-    token = _kept_layouts.set({})
+    """Within it, islands that were packed in the same way before are not packed again, and those that were turned by
+    quarters not turned so again: maps are packed to be compared, and the chosen one once more as the result."""
+    token = _kept.set(_Kept())
     try:
         yield
     finally:
-        _kept_layouts.reset(token)
+        _kept.reset(token)
 
 
 def pack_islands(
@@ -163,26 +171,29 @@ def pack_islands(
     out = uv.copy()
     if not len(solved):
         return out
-    kept = _kept_layouts.get()
-    key = b"" if kept is None else _digest(uv, island, (square, may_turn, tiles))
-    if kept is not None and key in kept:
+    kept = _kept.get() or _Kept()
+    given = _digest(uv, island)
+    asked = given, square, may_turn, tiles
+    if asked in kept.layouts:
         if progress is not None and progress(1.0) is False:
             raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
-        return kept[key].copy()
+        return kept.layouts[asked].copy()
     if tiles > 1:
         out[solved] = spread_over_tiles(uv[solved], island[solved], square.margin, tiles, may_turn, progress)
     else:
-        islands = islands_of(uv[solved], island[solved])
-        found = best_layout(islands, square, may_turn, progress)
+        searched = given, square, bool(may_turn)
+        # One that is stopped is not kept.
+        search = kept.searches.pop(searched, None) or LayoutSearch(islands_of(uv[solved], island[solved]), square)
+        found = search.best(may_turn, progress)
+        kept.searches[searched] = search
         place = (found.place - found.low) / (found.side if square.fill else 1.0)
-        out[solved] = np.stack([place.real, place.imag], axis=-1)[islands.triangles] + square.margin
-    if kept is not None:
-        kept[key] = out.copy()
+        out[solved] = np.stack([place.real, place.imag], axis=-1)[search.islands.triangles] + square.margin
+    kept.layouts[asked] = out.copy()
     return out
 
 
-def _digest(uv: FloatArray, island: IndexArray, how: tuple[object, ...]) -> bytes:
-    digest = hashlib.blake2b(repr((uv.shape, how)).encode())
+def _digest(uv: FloatArray, island: IndexArray) -> bytes:
+    digest = hashlib.blake2b(repr(uv.shape).encode())
     digest.update(np.ascontiguousarray(uv))
     digest.update(np.ascontiguousarray(island))
     return digest.digest()

@@ -13,7 +13,7 @@ from ..base.progress import Progress
 from ..errors import InputError
 from ..triangles import uv_areas
 from .chart_packer import Indices, Islands, Layout, Square
-from .layout_search import Turned, best_layout, islands_of
+from .layout_search import LayoutSearch, Turned, islands_of
 from .texels import TILES_IN_ROW
 
 # How often an island is moved from the fullest tile to the emptiest at most, and what each move has to gain.
@@ -174,7 +174,7 @@ class _Search:
         """The same with another margin."""
         inside = wanted[self._number]
         islands = islands_of(self._uv[inside], self._number[inside])
-        tile = _Tile(islands, best_layout(islands, square, self._may_turn, self._tell))
+        tile = _Tile(islands, LayoutSearch(islands, square).best(self._may_turn, self._tell))
         self._told += (1 - self._told) * _SHARE
         return tile
 

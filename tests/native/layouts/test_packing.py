@@ -17,7 +17,7 @@ from layout_check import coverage, moves, overlapping_islands, room, share_along
 from lsgp import TexelLayout
 from lsgp.layouts import packing
 from lsgp.layouts.island_gaps import least_gap
-from lsgp.layouts.layout_search import best_layout
+from lsgp.layouts.layout_search import LayoutSearch
 from map_checks import codes, surface
 from other_process import in_another_process
 
@@ -254,12 +254,13 @@ def test_margins_that_leave_no_room_are_refused(packer) -> None:
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPatch, preset: str) -> None:
     packed = []
+    best = LayoutSearch.best
 
-    def counted(islands: object, *how: object) -> object:
-        packed.append(islands)
-        return best_layout(islands, *how)
+    def counted(self: LayoutSearch, *how: object) -> object:
+        packed.append(self)
+        return best(self, *how)
 
-    monkeypatch.setattr(packing, "best_layout", counted)
+    monkeypatch.setattr(LayoutSearch, "best", counted)
     given = surface(meshes.flower(3))
     shelves = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
     compared = len(packed)
@@ -268,6 +269,21 @@ def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPa
     assert len(packed) == 2 * compared
     assert (result.corner_uv == lsgp.pack_islands(shelves.corner_uv, shelves.island)).all()
     assert len(packed) == 2 * compared + 1  # nothing is kept from one call to the next
+
+
+def test_a_search_goes_on_from_quarter_turns_as_if_it_began(packer) -> None:
+    given = on_shelves("bake")
+    how = given.corner_uv, given.island
+    with packing.packing_once():
+        with pytest.raises(lsgp.Cancelled):
+            lsgp.pack_islands(*how, turned="quarters", progress=lambda done: done < 0.2)
+        together = [lsgp.pack_islands(*how, turned=turned) for turned in ("quarters", True, "quarters")]
+        told: list[float] = []
+        lsgp.pack_islands(*how, margin=0.01, turned="quarters")
+        lsgp.pack_islands(*how, margin=0.01, progress=told.append)
+    assert told == sorted(told) and told[0] > 0.5 and told[-1] == 1
+    for turned, packed in zip(("quarters", True, "quarters"), together, strict=True):
+        assert np.array_equal(packed, lsgp.pack_islands(*how, turned=turned), equal_nan=True)
 
 
 def test_progress_is_told_and_stops_it(packer) -> None:
