@@ -46,6 +46,7 @@ def prepare() -> Iterator[float]:
     for area in areas("VIEW_3D"):
         space = area.spaces.active
         space.show_region_ui, space.show_region_toolbar = True, False
+        space.show_gizmo_navigate = False  # its buttons would cover cones
         space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     for area in areas("IMAGE_EDITOR"):
         area.spaces.active.show_region_toolbar = False
@@ -113,7 +114,7 @@ def steps(out: Path) -> Iterator[float]:
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_mode(type="FACE")
     yield from unwrapped(bpy.ops.uv.cone_auto_unwrap)
-    yield from show_all(1.05)
+    yield from show_all(1.2)
     take_picture(out / "step-press.png")
     with inside(areas("VIEW_3D")[0]):
         bpy.ops.uv.cone_texture(pattern="CHECKER", tiles=16)
@@ -129,7 +130,7 @@ def steps(out: Path) -> Iterator[float]:
         demo_scene.run_in_edit_mode(cube, bpy.ops.transform.tosphere, value=0.4)
         bpy.ops.object.mode_set(mode="EDIT")
         select_corners(cube)
-        bpy.ops.mesh.cone_mark()
+        bpy.ops.mesh.cone_mark("EXEC_DEFAULT", True)  # as a step of undo, which the panel at the lower left names
     yield from show_all(1.35)
     take_picture(out / "step-cones.png")
     yield from unwrapped(bpy.ops.uv.cone_unwrap)

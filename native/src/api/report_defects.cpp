@@ -17,7 +17,7 @@ void report_overlapping(const Options& options, const Defects& found, Result& re
   const auto report = [&](const std::vector<Index>& triangles, const char* what) {
     if (triangles.empty()) return;
     result.warnings.push_back({Code::overlapping_triangles,
-                               concat(count(triangles.size(), "triangle lies", "triangles lie"), " on others ", what),
+                               concat(count(triangles.size(), "triangle overlaps", "triangles overlap"), " others ", what),
                                {ElementKind::triangles, triangles}});
   };
   if (options.overlaps == Overlaps::keep) {
