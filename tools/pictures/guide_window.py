@@ -2,8 +2,8 @@
 """The picture of the guide that shows Blender's window: a rounded cube with its overlay, its UV map and the sidebar.
 
     export LIBGL_ALWAYS_SOFTWARE=1
-    xvfb-run --auto-servernum "--server-args=-screen 0 1500x960x24" blender --factory-startup \
-        --window-geometry 0 0 1500 960 --python tools/pictures/guide_window.py -- --extension ZIP --out OUT
+    xvfb-run --auto-servernum "--server-args=-screen 0 1500x1000x24" blender --factory-startup \
+        --window-geometry 0 0 1500 1000 --python tools/pictures/guide_window.py -- --extension ZIP --out OUT
 
 BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed. Leaves OUT/guide-window.png.
 """
