@@ -139,7 +139,7 @@ def _hidden_overlaps(result: lsgp.Result, opened: Opened) -> list[str]:
     on_others = np.unique(opened.triangle[pairs[sure]])
     unlisted = on_others[~np.isin(on_others, result.overlapping)]
     if len(unlisted):
-        faults.append(f"{len(unlisted)} triangles {unlisted[:5].tolist()} lie on others that the result does not list")
+        faults.append(f"{len(unlisted)} triangles {unlisted[:5].tolist()} overlap others that the result does not list")
     if not np.isin(result.overlapping, opened.triangle[pairs]).all():
         faults.append("triangles listed as overlapping that lie on no other")
     # What rounding may have made of nothing counts or does not.

@@ -52,7 +52,7 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
         for part in shown[:MOST_PARTS]:
             box = layout.box().column(align=True)
             if len(table) > 1:
-                box.label(text=f"Part of {len(part.ledger.triangles):,} triangles")
+                box.label(text=f"Component of {len(part.ledger.triangles):,} triangles")
             draw_ledger(box, part)
             if part.rows:
                 draw_head(box)
@@ -62,7 +62,7 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
                 box.label(text=f"and {len(part.rows) - rows} more cones")
             rows -= min(rows, len(part.rows))
         if len(shown) > MOST_PARTS:
-            layout.label(text=f"and {len(shown) - MOST_PARTS} more parts")
+            layout.label(text=f"and {len(shown) - MOST_PARTS} more components")
 
     def _draw_fixes(self, layout: bpy.types.UILayout, settings: TableSettings) -> None:
         column = layout.column(align=True)

@@ -14,7 +14,7 @@ from ..mesh.reports import Report
 Row = tuple[str, ...]
 
 QUALITY_HEADER = ("", "Value", "Ideal")
-SEAM_HEADER = ("Turn", "Shift", "Texels")
+SEAM_HEADER = ("Rotation", "Translation", "Texels")
 
 # Further cuts are only counted.
 SHOWN_CUTS = 8
@@ -34,8 +34,8 @@ def quality_rows(report: Report) -> list[Row]:
         ("Areas, 90 %", f"{figures['area_p90']:.3f}", "1"),
         ("Stretch", f"{figures['l2_stretch']:.3f}", "1"),
         ("Sides of Cuts", _small(seams["sister_ratio_max"] - 1), EXACT),
-        ("Turns of Cuts", _small(math.degrees(seams["rotation_residual"]), "°"), EXACT),
-        ("Shifts of Cuts", _small(seams["translation_residual"]), EXACT),
+        ("Rotations of Cuts", _small(math.degrees(seams["rotation_residual"]), "°"), EXACT),
+        ("Translations of Cuts", _small(seams["translation_residual"]), EXACT),
         ("Flipped Faces", str(len(report.flipped)), "0"),
         ("Overlapping Faces", str(len(report.overlapping)) if report.overlaps_known else "?", "0"),
     ]

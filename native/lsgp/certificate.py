@@ -66,14 +66,16 @@ def certificate_table(report: SeamlessReport, texture_size: int) -> str:
     ]
     if not count:
         return lines[0]
-    lines.append(f"{'from vertex':>11}{'to vertex':>11}{'turn':>7}{f'translation in {unit}':>23}{'texels off':>12}")
+    lines.append(
+        f"{'from vertex':>11}{'to vertex':>11}{'rotation':>10}{f'translation in {unit}':>23}{'texels off':>12}"
+    )
     order = np.argsort(-report.cut_errors, kind="stable")
     for cut in order[:SHOWN_CUTS].tolist():
         tail, head = report.cut_nodes[cut].tolist()
         turns = int(report.cut_turns[cut])
-        turn = f"{turns}/{report.rotation_order}" if turns else "0"
+        rotation = f"{turns}/{report.rotation_order}" if turns else "0"
         a, b = report.cut_translations[cut].tolist()
-        lines.append(f"{tail:>11}{head:>11}{turn:>7}{f'{a}, {b}':>23}{_off(report.cut_errors[cut] * texels):>12}")
+        lines.append(f"{tail:>11}{head:>11}{rotation:>10}{f'{a}, {b}':>23}{_off(report.cut_errors[cut] * texels):>12}")
     rest = report.cut_errors[order[SHOWN_CUTS:]]
     if len(rest):
         worst = rest.max() * texels

@@ -163,7 +163,7 @@ class GrabbedCut:
 
 
 def overlapping_triangles(corner_uv: ArrayLike) -> IndexArray:
-    """The triangles of a layout that lie on others, (t,) int32, ascending.
+    """The triangles of a layout that overlap others, (t,) int32, ascending.
 
     corner_uv: (m, 3, 2); triangles with a coordinate that is not finite are left out.  Raises InputError.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stitches boundaries that lie on each other, and closes edges without length: files for display repeat vertices
+"""Stitches boundaries that coincide, and closes edges without length: files for display repeat vertices
 wherever normals or UVs differ, and the surface is open there without looking so; modelers leave a vertex for each face
 at poles."""
 
@@ -23,7 +23,7 @@ _FOLDED = -1 + 1e-6
 
 
 def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
-    """The vertices with which boundaries that lie on each other are one, and edges without length a point:
+    """The vertices with which boundaries that coincide are one, and edges without length a point:
     `Surface(positions, stitched[triangles], may_collapse=True)`.
 
     positions: (n, 3). triangles: (m, 3) vertices.

@@ -131,7 +131,7 @@ def test_islands_on_each_other_are_noticed() -> None:
     uv = result.corner_uv.copy()
     uv[result.island == 1] += uv[result.island == 0].mean(axis=(0, 1)) - uv[result.island == 1].mean(axis=(0, 1))
     faults = undeclared_faults(surface(both), replace(result, corner_uv=uv))
-    assert any("lie on others" in fault for fault in faults)
+    assert any("overlap others" in fault for fault in faults)
 
 
 def test_angles_other_than_those_asked_for_are_noticed() -> None:

@@ -85,7 +85,7 @@ def add(shape: Shape, material: bpy.types.Material) -> bpy.types.Object:
 
 
 def add_mesh(name: str) -> bpy.types.Object:
-    """A mesh of the shared collection next to the checkout."""
+    """A mesh of the collection next to the checkout."""
     bpy.ops.wm.obj_import(filepath=str(MESHES / f"{name}.obj"), forward_axis="Y", up_axis="Z")
     return bpy.context.object
 

@@ -32,7 +32,9 @@ from blender_window import (
     take_picture,
 )
 
-SIDEBAR = 0.22  # of the distance that the view moves, so that it does not cover the model
+# Of the distance that the view moves, so that the sidebar covers neither the model nor the angles beside its cones.
+SIDEBAR = 0.22
+SIDEBAR_BESIDE_EAR = 0.33
 TILE = 85  # pixels of a tile in the UV editor
 CORNERS = 8  # of a cube, the first of its vertices
 
@@ -46,6 +48,7 @@ def prepare() -> Iterator[float]:
     for area in areas("VIEW_3D"):
         space = area.spaces.active
         space.show_region_ui, space.show_region_toolbar = True, False
+        space.show_gizmo_navigate = False  # its buttons would cover cones
         space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     for area in areas("IMAGE_EDITOR"):
         area.spaces.active.show_region_toolbar = False
@@ -53,10 +56,10 @@ def prepare() -> Iterator[float]:
     open_tab(areas("VIEW_3D")[0])
 
 
-def show_all(distance: float) -> Iterator[float]:
+def show_all(distance: float, aside: float = SIDEBAR) -> Iterator[float]:
     """The whole model from a side, beside the sidebar, and the whole layout, nothing selected.
 
-    distance: in units of the one at which Blender shows all.
+    distance: in units of the one at which Blender shows all. aside: how much of it the view moves.
     """
     view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
     with inside(view):
@@ -69,7 +72,7 @@ def show_all(distance: float) -> Iterator[float]:
         bpy.ops.mesh.select_all(action="DESELECT")
     seen = view.spaces.active.region_3d
     seen.view_distance *= distance
-    seen.view_location = seen.view_rotation @ Vector((SIDEBAR * seen.view_distance, 0, 0))
+    seen.view_location = seen.view_rotation @ Vector((aside * seen.view_distance, 0, 0))
     yield 2 * WAIT
 
 
@@ -113,7 +116,7 @@ def steps(out: Path) -> Iterator[float]:
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_mode(type="FACE")
     yield from unwrapped(bpy.ops.uv.cone_auto_unwrap)
-    yield from show_all(1.05)
+    yield from show_all(1.2, SIDEBAR_BESIDE_EAR)
     take_picture(out / "step-press.png")
     with inside(areas("VIEW_3D")[0]):
         bpy.ops.uv.cone_texture(pattern="CHECKER", tiles=16)
@@ -129,7 +132,7 @@ def steps(out: Path) -> Iterator[float]:
         demo_scene.run_in_edit_mode(cube, bpy.ops.transform.tosphere, value=0.4)
         bpy.ops.object.mode_set(mode="EDIT")
         select_corners(cube)
-        bpy.ops.mesh.cone_mark()
+        bpy.ops.mesh.cone_mark("EXEC_DEFAULT", True)  # as a step of undo, which the panel at the lower left names
     yield from show_all(1.35)
     take_picture(out / "step-cones.png")
     yield from unwrapped(bpy.ops.uv.cone_unwrap)

@@ -2,8 +2,8 @@
 """The picture of the guide that shows Blender's window: a rounded cube with its overlay, its UV map and the sidebar.
 
     export LIBGL_ALWAYS_SOFTWARE=1
-    xvfb-run --auto-servernum "--server-args=-screen 0 1500x860x24" blender --factory-startup \
-        --window-geometry 0 0 1500 860 --python tools/pictures/guide_window.py -- --extension ZIP --out OUT
+    xvfb-run --auto-servernum "--server-args=-screen 0 1500x1000x24" blender --factory-startup \
+        --window-geometry 0 0 1500 1000 --python tools/pictures/guide_window.py -- --extension ZIP --out OUT
 
 BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed. Leaves OUT/guide-window.png.
 """
@@ -62,6 +62,7 @@ def show(out: Path) -> Iterator[float]:
         bpy.context.tool_settings.use_uv_select_sync = True
     for space in view.spaces:
         space.show_region_ui, space.show_region_toolbar, space.overlay.show_floor = True, False, False
+        space.show_gizmo_navigate = False  # its buttons would cover cones
     yield WAIT
     open_tab(view)
     with inside(view):

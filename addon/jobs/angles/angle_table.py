@@ -135,7 +135,7 @@ def last_settings(context: bpy.types.Context) -> TableSettings:
 
 
 def build_table(surface: lsgp.Surface, cones: ConeAngles, options: lsgp.Options) -> list[TablePart]:
-    """All connected parts of a surface.  Cones that no part counts, such as those on a free border, have no row."""
+    """All connected parts of a surface.  Cones that no part counts, such as those on a free boundary, have no row."""
     cones = cones.without_stale(surface, options)
     table = []
     for ledger in native.lsgp.build_ledger(surface, cones.cones, cones.angles, options):
@@ -153,7 +153,7 @@ def verdict(part: lsgp.LedgerPart) -> str:
     """Whether the ledger of a part closes, and if not, what to do."""
     automatic = len(part.automatic)
     if part.border_takes_up:
-        return "The border takes up the rest"
+        return "The boundary takes up the rest"
     if part.complete:
         return "All curvature is assigned"
     if part.closes:

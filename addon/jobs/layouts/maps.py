@@ -44,7 +44,7 @@ class PackSettings:
     margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells, and islands are not turned where the
     texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
-    islands of one shape lie on each other, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
+    islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
     """
 
     pack: bool
@@ -77,7 +77,7 @@ def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[N
 
 
 def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
-    """As above, and how many islands lie on others."""
+    """As above, and how many islands are stacked on others."""
     if not settings.pack or not solved:
         return [unwrapped.corner_uv for unwrapped in solved], 0
     if settings.by_cells:

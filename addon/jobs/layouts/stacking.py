@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands of all objects that lie on others of their shape."""
+"""Islands of all objects that are stacked on others of their shape."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Layout:
         return bool(((low < 0) | (np.floor(low) != np.floor(high))).any())
 
     def overlaps(self) -> bool:
-        """Whether islands lie on each other, as far as a raster tells."""
+        """Whether islands overlap each other, as far as a raster tells."""
         corners = self.corner_uv[self.island >= 0]
         island = self.island[self.island >= 0]
         low = corners.min(axis=(0, 1), initial=np.inf)
@@ -104,7 +104,7 @@ def joined(layouts: Sequence[Layout]) -> Layout:
 
 
 def _is_needed(placements: Sequence[Placement]) -> bool:
-    """Whether an edited island is outside the square, or islands lie on each other and did not before."""
+    """Whether an edited island is outside the square, or islands overlap each other and did not before."""
     now, before = (joined([getattr(placement, when) for placement in placements]) for when in ("now", "before"))
     edited = np.concatenate([placement.edited for placement in placements])
     return edited.any() and (now.crosses_tiles(edited) or (now.overlaps() and not before.overlaps()))

@@ -37,7 +37,7 @@ class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
     )
     angle: bpy.props.FloatProperty(
         name="Angle",
-        description="Total angle around the cone, where 360° is flat; on the border, the angle of the corner",
+        description="Total angle around the cone, where 360° is flat; on a boundary, the angle of the corner",
         default=1.5 * math.pi,
         min=math.radians(0.1),
         soft_max=4 * math.pi,

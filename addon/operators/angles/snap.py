@@ -26,8 +26,8 @@ class MESH_OT_cone_snap_angles(LatticeProperty, AngleOperator, bpy.types.Operato
     bl_idname = identifiers.SNAP_ANGLES
     bl_label = "Snap to Quarter Turns"
     bl_description = (
-        "Round all cone angles to quarter turns, or to the turns of another pattern, so that they still add up, with "
-        "the least distortion; angles that are such turns already are kept"
+        "Round all cone angles to quarter turns, or to the rotations of another pattern, so that they still add up, "
+        "with the least distortion; angles that are multiples of these already are kept"
     )
     bl_options = {"REGISTER", "UNDO"}
     shown = ("lattice", "seams", "border")

@@ -118,7 +118,7 @@ class MESH_OT_cone_edit(ModalEdit, bpy.types.Operator):
                 return {"PASS_THROUGH"}
             pick[0].session.cones.active = pick[1].vertex
         self._typed.clear()
-        self._objects.history.begin("Turn Angle")
+        self._objects.history.begin("Change Angle")
         self._objects.active.session.turn_angle(FINE_STEP if event.shift else WHEEL_STEP, WHEEL[event.type])
         self._changed()
         return {"RUNNING_MODAL"}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...jobs.tasks.solving import Progress
 
 MIRRORS = {
-    "FOUND": (None, "Found", "The plane in which each connected part is its own mirror image, if there is one"),
+    "FOUND": (None, "Found", "The plane in which each connected component is its own mirror image, if there is one"),
     "X": ((1.0, 0.0, 0.0), "X", "The object's plane across X, as in a Mirror modifier"),
     "Y": ((0.0, 1.0, 0.0), "Y", "The object's plane across Y, as in a Mirror modifier"),
     "Z": ((0.0, 0.0, 1.0), "Z", "The object's plane across Z, as in a Mirror modifier"),
@@ -55,7 +55,7 @@ class MESH_OT_cone_place(
     )
     target: bpy.props.FloatProperty(
         name="Stretch",
-        description="The stretch (L2, 1 is none) not to exceed on any connected part, as far as possible",
+        description="The stretch (L2, 1 is none) not to exceed on any connected component, as far as possible",
         default=1.05,
         min=1.001,
         soft_max=1.5,
@@ -64,14 +64,15 @@ class MESH_OT_cone_place(
     )
     count: bpy.props.IntProperty(
         name="Count",
-        description="Cones on each connected part, including those already marked",
+        description="Cones on each connected component, including those already marked",
         default=8,
         min=0,
         soft_max=64,
     )
     seamless: bpy.props.BoolProperty(
         name="Seamless",
-        description="Choose places and angles for a seamless layout, whose angles are turns of its pattern",
+        description="Choose places and angles for a seamless layout, whose angles are multiples of the rotation of "
+        "its pattern",
         default=False,
     )
     symmetric: bpy.props.BoolProperty(

@@ -115,7 +115,7 @@ class MESH_OT_cone_edit_cuts(ModalEdit, bpy.types.Operator):
         texts = [f"Edit Cuts: {counted(sum(len(session.paths) for session in sessions), 'cut')}"]
         overlapping = sum(len(session.overlapping) for session in sessions)
         if overlapping:
-            texts.append(f"{counted(overlapping, 'face')} on others in the UV map")
+            texts.append(f"{counted(overlapping, 'overlapping face')} in the UV map")
         if any(session.leaves_tile for session in sessions):
             texts.append("The UV map leaves its tile; pack it afterward")
         texts += [f"{name}: {findings.explain(error)}" for name, error in self._objects.failures.items()]

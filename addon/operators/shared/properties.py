@@ -12,7 +12,7 @@ SEAMS: Choices = {
         "Follow",
         "All marked seams are cut, others only where cones need it; both sides match if there are cones",
     ),
-    "BOUNDARY": ("boundary", "Boundary", "Marked seams are open borders, as in Blender's own unwrap; holes stay holes"),
+    "BOUNDARY": ("boundary", "Boundary", "Marked seams are boundaries, as in Blender's own unwrap; holes stay holes"),
     "IGNORE": ("ignore", "Ignore", "Marked seams do not influence where cuts run"),
 }
 CUTS: Choices = {
@@ -25,9 +25,9 @@ BORDERS: Choices = {
     "FREE": (
         "free",
         "Free",
-        "Borders take the shape with the least distortion; cones with an angle are corners there",
+        "Boundaries take the shape with the least distortion; cones with an angle are corners there",
     ),
-    "STRAIGHT": ("straight", "Straight", "Borders run straight from cone to cone: a cylinder becomes a strip"),
+    "STRAIGHT": ("straight", "Straight", "Boundaries run straight from cone to cone: a cylinder becomes a strip"),
 }
 LATTICES: Choices = {
     "SQUARE": (
@@ -52,7 +52,7 @@ LATTICES: Choices = {
     ),
     "TRANSLATION": (
         "translation",
-        "No Turns",
+        "No Rotation",
         "For every tileable texture, but only on surfaces that allow it, such as a torus or a tube",
     ),
 }
@@ -96,10 +96,12 @@ class CutsProperty:
 
 
 class BorderProperty:
-    """Mix-in: the shape of the mesh's own borders."""
+    """Mix-in: the shape of the mesh's own boundaries."""
 
     border: bpy.props.EnumProperty(
-        name="Borders", description="The shape of the mesh's own borders in the UV map", items=enum_items(BORDERS)
+        name="Boundaries",
+        description="The shape of the mesh's own boundaries in the UV map",
+        items=enum_items(BORDERS),
     )
 
 
@@ -107,5 +109,5 @@ class LatticeProperty:
     """Mix-in: the pattern of the texture."""
 
     lattice: bpy.props.EnumProperty(
-        name="Pattern", description="The turns that leave the texture unchanged", items=enum_items(LATTICES)
+        name="Pattern", description="The rotations that leave the texture unchanged", items=enum_items(LATTICES)
     )

@@ -41,11 +41,11 @@ SCALES: Choices = {
 
 STACKS: Choices = {
     "NONE": (None, "None", "Every island has texels of its own"),
-    "SAME": ("same", "Same", "Islands of one shape lie on each other and share their texels"),
+    "SAME": ("same", "Same", "Islands of one shape are stacked and share their texels"),
     "MIRRORED": (
         "mirrored",
         "Same or Mirrored",
-        "Islands also lie on mirrored ones, such as those of the two halves of a body",
+        "Mirrored islands are stacked as well, such as those of the two halves of a body",
     ),
 }
 
@@ -89,7 +89,7 @@ class UV_OT_cone_auto_unwrap(
     scale: bpy.props.EnumProperty(name="Scale", description="How large islands are", items=enum_items(SCALES))
     stack: bpy.props.EnumProperty(
         name="Stack",
-        description="Which islands lie on each other, so that all become larger; what is painted or baked on one "
+        description="Which islands are stacked, so that all become larger; what is painted or baked on one "
         "appears on all. They do not count as overlapping. Not at a texel density",
         items=enum_items(STACKS),
     )
@@ -99,10 +99,10 @@ class UV_OT_cone_auto_unwrap(
         default=True,
     )
     creases: bpy.props.BoolProperty(
-        name="Creases as Borders",
+        name="Creases as Boundaries",
         description="Cut hard surfaces at their creases and at edges marked sharp where that removes stretch; Paint "
-        "does so only where many cones would be needed otherwise, Tile never. Parts with marked cones or seams are not "
-        "affected",
+        "does so only where many cones would be needed otherwise, Tile never. Components with marked cones or seams "
+        "are not affected",
         default=True,
     )
     straighten: bpy.props.BoolProperty(
@@ -121,8 +121,8 @@ class UV_OT_cone_auto_unwrap(
     )
     symmetric: bpy.props.BoolProperty(
         name="Symmetric",
-        description="Place cones alike on both sides of a mirror plane, and on parts that mirror each other, if that "
-        "costs hardly any stretch and few islands; only where no cones are marked",
+        description="Place cones alike on both sides of a mirror plane, and on components that mirror each other, if "
+        "that costs hardly any stretch and few islands; only where no cones are marked",
         default=True,
     )
     mark: bpy.props.BoolProperty(

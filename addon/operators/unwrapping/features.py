@@ -29,7 +29,7 @@ class FeatureProperties:
         name="Seams", description=f"Let edges marked as seams {ALONG}the same way", default=False
     )
     straight_borders: bpy.props.BoolProperty(
-        name="Borders", description=f"Let the mesh's own borders {ALONG}the same way", default=False
+        name="Boundaries", description=f"Let the mesh's own boundaries {ALONG}the same way", default=False
     )
     straight_creases: bpy.props.BoolProperty(
         name="Creases", description=f"Let edges at which the surface bends {ALONG}the same way", default=False

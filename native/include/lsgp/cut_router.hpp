@@ -62,7 +62,7 @@ class LSGP_API CutRouter {
   std::shared_ptr<const Kept> kept_;
 };
 
-// The triangles of a layout that lie on others, ascending.  corner_uv: (3m, 2), not finite in those to leave out.
+// The triangles of a layout that overlap others, ascending.  corner_uv: (3m, 2), not finite in those to leave out.
 LSGP_API std::vector<Index> overlapping_triangles(const CornerUv& corner_uv);
 
 }  // namespace lsgp

@@ -104,7 +104,7 @@ def read_mesh_file(path: str | os.PathLike[str], with_uv: bool = False, *, stitc
     Vertices are those of the file, in its order; of STL and glTF, which repeat them, each place once. Polygons are cut
     into triangles.
     with_uv: read texture coordinates as well, of OBJ and glTF.
-    stitch: boundaries that lie on each other are stitched, as by `stitch_borders`; `MeshFile.stitched` has the vertices
+    stitch: boundaries that coincide are stitched, as by `stitch_borders`; `MeshFile.stitched` has the vertices
         that the surface has instead of others, cones for instance.
     Raises OSError; InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED, MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
     """

@@ -64,7 +64,7 @@ class Packing:
     pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if that
         is installed and the margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side;
         None: `DEFAULT_MARGIN` before the layout gets a texel density, which scales it too. udim: over how many UDIM
-        tiles a tight layout is spread, as by `pack_islands`. stack: islands of one shape lie on each other, as by
+        tiles a tight layout is spread, as by `pack_islands`. stack: islands of one shape are stacked, as by
         `find_stacks`; "mirrored": reflected ones as well; None: none do.
     """
 
@@ -255,7 +255,7 @@ def laid_out(
 
 
 def _packed(result: Result, stack: Stack | None, margin: float, **how: Any) -> tuple[Result, NDArray[np.bool_]]:
-    """The result packed, and the triangles, (m,) bool, that lie on others.  how: as for `pack_islands`."""
+    """The result packed, and the triangles, (m,) bool, that overlap others.  how: as for `pack_islands`."""
     uv, island = result.corner_uv, result.island
     if stack is None:
         packed = pack_islands(uv, island, margin, **how)
@@ -265,7 +265,8 @@ def _packed(result: Result, stack: Stack | None, margin: float, **how: Any) -> t
     warnings = list(result.warnings)
     if stacks.count:
         message = (
-            f"{stacks.count} of {int(island.max()) + 1} islands lie on others of their shape and share their texels."
+            f"{stacks.count} of {int(island.max()) + 1} islands are stacked on others of their shape and share their "
+            "texels."
         )
         warnings.append(
             Finding("ISLANDS_STACKED", message, Elements("triangles", np.flatnonzero(~stacks.kept).astype(np.int32)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands of one shape, which may lie on each other and share their texels."""
+"""Islands of one shape, which may be stacked and share their texels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Stacks(EqualByContent, ShortRepr):
     """Which islands may lie on which.
 
     source: (m, 3), the corner, 3 * triangle + place, whose coordinates each takes; in islands that stay, its own.
-    kept: (m,), triangles of islands that stay and those in none. count: islands that lie on others.
+    kept: (m,), triangles of islands that stay and those in none. count: islands that are stacked on others.
     """
 
     source: Indices

@@ -112,7 +112,7 @@ def auto_unwrap(
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
         a texel density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
         `Options.square_share`; not with texels, which have their own.
-    stack: in tight layouts, islands of one shape lie on each other, as by `find_stacks`: "same", or "mirrored", which
+    stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings

@@ -120,7 +120,7 @@ struct GrabbedCut::Kept {
     const auto& source = component.source_vertex;
     const auto found = std::find(source.begin(), source.end(), vertex);
     if (found == source.end()) {
-      throw Error(Code::cut_not_movable, "A cut cannot leave its connected part of the mesh.");
+      throw Error(Code::cut_not_movable, "A cut cannot leave its connected component.");
     }
     return static_cast<Index>(found - source.begin());
   }

@@ -16,9 +16,10 @@ namespace {
 void report_overlapping(const Options& options, const Defects& found, Result& result) {
   const auto report = [&](const std::vector<Index>& triangles, const char* what) {
     if (triangles.empty()) return;
-    result.warnings.push_back({Code::overlapping_triangles,
-                               concat(count(triangles.size(), "triangle lies", "triangles lie"), " on others ", what),
-                               {ElementKind::triangles, triangles}});
+    result.warnings.push_back(
+        {Code::overlapping_triangles,
+         concat(count(triangles.size(), "triangle overlaps", "triangles overlap"), " others ", what),
+         {ElementKind::triangles, triangles}});
   };
   if (options.overlaps == Overlaps::keep) {
     report(result.overlapping, "in the layout. To bake onto it, choose to split overlaps.");

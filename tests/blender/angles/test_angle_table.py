@@ -199,7 +199,7 @@ def test_the_ledger_says_what_becomes_of_the_curvature(in_edit_mode):
     assert said(cube) == ["Does not add up: spread the rest, or change an angle"]
     angles.write_angles(cube, corners(cube), [None, *[2 * pi] * 7], [Kind.PRESCRIBED] * 8)
     assert said(cube) == ["Too much for 1 automatic cone: mark more"]
-    assert said(add_tube()) == ["The border takes up the rest"]
+    assert said(add_tube()) == ["The boundary takes up the rest"]
 
 
 def test_parts_have_a_ledger_each():

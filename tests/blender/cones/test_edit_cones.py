@@ -496,8 +496,8 @@ def test_steps_are_undone_and_redone_with_the_angles_the_active_cone_and_the_map
         compare(seen[number])
     assert not history.redo()
     assert history.undo()
-    change("Turn Angle", lambda: session.turn_angle(math.radians(15), 1))
-    assert history.redoes is None and history.undoes == "Turn Angle"
+    change("Change Angle", lambda: session.turn_angle(math.radians(15), 1))
+    assert history.redoes is None and history.undoes == "Change Angle"
     session.restore()
 
 

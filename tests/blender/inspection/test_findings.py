@@ -30,7 +30,7 @@ def finding(code="NOT_SYMMETRIC", message="Something is off. Mend it.", vertices
         ("A part was left as it is (TOO_FEW_CONES): Mark cones.", "A part was left as it is: Mark cones."),
         ("Its L2 stretch is 9.95139, 1 being none.", "Its stretch is 9.951, 1 being none."),
         ("Mark cones, or place them automatically.", "Mark cones, or use Auto Unwrap."),
-        ("12 triangles lie on others in the layout.", "12 triangles lie on others in the layout."),
+        ("12 triangles overlap others in the layout.", "12 triangles overlap others in the layout."),
     ],
 )
 def test_the_librarys_sentences_are_put_into_an_artists_words(message, shown):

@@ -87,7 +87,7 @@ def test_the_table_has_the_figures_of_the_library():
     assert float(rows["Angles"]) == pytest.approx(report.distortion["quasi_conformal"], abs=5e-4)
     assert float(rows["Stretch"]) == pytest.approx(report.distortion["l2_stretch"], abs=5e-4)
     assert rows["Flipped Faces"] == rows["Overlapping Faces"] == "0"
-    assert {rows[name] for name in ("Sides of Cuts", "Turns of Cuts", "Shifts of Cuts")} == {"exact"}
+    assert {rows[name] for name in ("Sides of Cuts", "Rotations of Cuts", "Translations of Cuts")} == {"exact"}
     texts, _ = drawn(panels.VIEW3D_PT_cone_unwrap_quality)
     assert " ".join(texts).startswith("96 faces, 1 island, 8 cones")
 
@@ -120,7 +120,7 @@ def test_a_message_has_a_button_that_selects_what_it_is_about():
     bpy.ops.uv.cone_unwrap(overlaps="KEEP")
     overlapping = saved_reports.find(ramp.data).overlapping
     texts, buttons = drawn(panels.VIEW3D_PT_cone_unwrap_problems)
-    assert "lie on others in the layout" in " ".join(texts)
+    assert "overlap others in the layout" in " ".join(texts)
     edit(ramp, select="DESELECT")
     name, button = buttons[0]
     assert name == "mesh.cone_select_reported"

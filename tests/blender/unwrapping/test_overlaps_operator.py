@@ -24,7 +24,7 @@ def test_overlaps_are_counted_and_shown(reports):
     faces = uv_map.overlapping()
     assert uv_map.islands() == 1 and len(faces) > 60
     assert float(re.search(r"(\S+) % overlapping", said)[1]) == pytest.approx(100 * uv_map.overlap_area(), rel=0.03)
-    triangles = int(re.search(r"(\d+) triangles lie on others", said)[1])
+    triangles = int(re.search(r"(\d+) triangles overlap others", said)[1])
     assert "set Overlaps to Split" in said
     assert len(faces) <= triangles <= 2 * len(faces)
     assert bpy.ops.mesh.cone_select_reported() == {"FINISHED"}
@@ -56,7 +56,7 @@ def test_split_islands_lie_neither_on_themselves_nor_on_others(in_edit_mode, mod
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
     said = reports()
     assert f"{uv_map.islands()} islands" in said
-    assert "overlapping" not in said and "lie on others" not in said
+    assert "overlapping" not in said and "overlap others" not in said
 
 
 def island_boxes(uv_map):
@@ -122,4 +122,4 @@ def test_pinned_islands_stay_whole_and_what_overlaps_is_told(reports):
     uv_map = unwrap(ramp, overlaps="SPLIT")
     assert uv_map.islands() == 1
     assert np.array_equal(uv_map.uv[loops], uv[loops])
-    assert "lie on others" in reports()
+    assert "overlap others" in reports()

@@ -84,7 +84,7 @@ def test_packed_stacks_share_texels_and_count_as_no_overlaps(stack: str) -> None
     count = lsgp.find_stacks(plain.corner_uv, plain.island, mirrored=stack == "mirrored").count
     assert count >= 3 and codes(result.warnings) == [*codes(plain.warnings), "ISLANDS_STACKED"]
     told = only(result.warnings, "ISLANDS_STACKED")
-    assert told.message.startswith(f"{count} of {plain.island.max() + 1} islands lie on others")
+    assert told.message.startswith(f"{count} of {plain.island.max() + 1} islands are stacked on others")
     seen = ~np.isin(np.arange(len(result.island)), told.elements.indices)
     assert overlapping_islands(result.corner_uv[seen], result.island[seen]) == 0
     assert corner_set(result.corner_uv) == corner_set(result.corner_uv[seen])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Borders run straight from cone to cone: a cylinder becomes a strip."""
+"""Boundaries run straight from cone to cone: a cylinder becomes a strip."""
 
 import bpy
 
