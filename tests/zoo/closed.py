@@ -64,6 +64,14 @@ def prism(sides: int, layers: int, height: float) -> Mesh:
     return lathe(np.ones(layers + 1), np.linspace(0, height, layers + 1), sides, caps=(True, True))
 
 
+def with_polygon_caps(sides: int, radius: tuple[float, float], height: float) -> Mesh:
+    """A prism, or a cone or a part of one, whose caps are cut into triangles without a vertex inside."""
+    body = lathe(np.array(radius), np.array([0.0, height]), sides, caps=(False, False))
+    rims = [[*range(sides - 1, -1, -1)], [*range(sides, 2 * sides)]] if radius[1] > 0 else [[*range(sides - 1, -1, -1)]]
+    caps = [[rim[0], rim[i], rim[i + 1]] for rim in rims for i in range(1, sides - 1)]
+    return make(body.positions, np.concatenate([body.triangles, caps]))
+
+
 def star(points: int, inner: float, height: float) -> Mesh:
     """A star-shaped outline, extruded."""
     body = prism(2 * points, 1, height)

@@ -21,10 +21,10 @@ from ..layouts.texels import TexelLayout, at_texel_density, with_tiny_findings
 from ..options import Options, Seamless
 from ..results import Result
 from ..surface import Pins, Surface
-from .border_gains import BorderGain, FullerSquare, LessStretch
+from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
 from .completed_cones import CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
-from .cone_choices import best_map, possible_cones
+from .cone_choices import best_map, follows_features, possible_cones
 from .map_comparison import fills_badly, may_replace_undivided
 
 Preset = Literal["paint", "tile", "bake"]
@@ -210,8 +210,13 @@ def crease_choices(
     sharp, errors: as for `crease_borders`.
     """
     most_corners = _MOST_CORNERS[preset]
-    if most_corners is None or options.seamless is not None or options.border != "free" or options.loop_turning:
+    if options.border != "free" or options.loop_turning:
         return CreaseChoices(surface)
+    if options.seamless is not None:
+        if not (given.is_free and follows_features(surface, options)) or len(surface.features):
+            return CreaseChoices(surface)
+        possible = crease_borders(surface, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
+        return CreaseChoices(surface, possible if len(possible) else None, preset)
     required = crease_borders(surface, given.cones, sharp=sharp, most_corners=most_corners)
     if given.count is not None:
         return CreaseChoices(_ending_at(surface, required))
@@ -252,10 +257,12 @@ def best_at_creases(
         components = Components.of(surface)
         possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))
         middle = (_TRYING + 1.0) / 2
-        gains = (
+        gains: tuple[tuple[BorderGain, float, float], ...] = (
             (LessStretch(components, options.square_share), _TRYING, middle),
             (FullerSquare(components, options.square_share, choices.preset == "paint"), middle, 1.0),
         )
+        if options.seamless is not None:
+            gains = ((AlongLattice(components, choices.possible), _TRYING, 1.0),)
         for gain, begin, end in gains:
             best = _gaining(gain, possible, best, make, share_of(progress, begin, end))
     if progress is not None:

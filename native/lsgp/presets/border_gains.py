@@ -9,11 +9,23 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arguments import FloatArray
+from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
 from ..results import Result
-from .components import Components
-from .map_comparison import WELL_FILLED, defects, island_count, least_filled, measure_of_filling, worthwhile
+from .components import Components, keys_of
+from .map_comparison import (
+    SMALL_MESH,
+    TARGET_L2,
+    WELL_FILLED,
+    defects,
+    has_direction,
+    island_count,
+    least_filled,
+    measure_of_filling,
+    run_along_axes,
+    seamless_worth,
+    worthwhile,
+)
 
 # Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
 # of it without further ones. So many cones that they spare pay for an island, as each has a cut that ends inside; on
@@ -24,6 +36,10 @@ _MOST_EXCESS_WITHOUT_ISLANDS = 0.8
 _EXCESS_FOR_ISLAND = 0.004
 _CONES_FOR_ISLAND = 2
 _LEAST_FILLED_WITH_BORDERS = 0.7
+# Share of creases along the lattice that is worth as much as a texture that runs on across them.
+_WORTH_OF_RUNNING_ON = 0.15
+# Of the area, where the mesh is not small: seamless layouts take long, and what is smaller is hardly seen.
+_LEAST_AREA = 0.05
 # Of the stretch of maps that are the same but for rounding.
 _ROUNDING = 1e-6
 
@@ -116,6 +132,50 @@ class FullerSquare:
             return False
         filled = measure_of_filling(usual, self.square_share, progress)
         return filled(usual) < least_filled(-more, bordered) * filled(bordered)
+
+
+@dataclass(frozen=True, slots=True)
+class AlongLattice:
+    """Seamless maps of the surface whose creases run along the lattice, at little stretch and with large tiles.
+
+    components: of the surface. borders: (b, 2), the possible ones.
+    """
+
+    components: Components
+    borders: IndexArray
+
+    def may_gain(self, usual: Result, chosen: NDArray[np.intp], progress: Progress | None) -> NDArray[np.bool_]:
+        """Those many of whose creases do not, or that are stretched more than cones are placed for, if they are not
+        small."""
+        is_stretched = self.components.stretches(usual) > TARGET_L2
+        return self._if_large((is_stretched | ~has_direction(self._shares(usual, usual)))[chosen], chosen)
+
+    def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Where that is worth that the texture does not run on across their creases, if they are not small."""
+        one, other = (
+            seamless_worth(self._shares(result, bordered, usual), self.components.stretches(result), result)
+            for result in (bordered, usual)
+        )
+        return self._if_large((one >= other + _WORTH_OF_RUNNING_ON)[chosen], chosen)
+
+    def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
+        """Where all have gained, and it has no further defects."""
+        return bordered.solved.tolist() == usual.solved.tolist() and defects(bordered) <= defects(usual)
+
+    def _if_large(self, is_some: NDArray[np.bool_], chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
+        areas = self.components.areas()
+        is_large = areas[chosen][is_some].sum() >= _LEAST_AREA * areas.sum()
+        return is_some & (is_large or len(self.components.surface.triangles) <= SMALL_MESH)
+
+    def _shares(self, result: Result, *others: Result) -> FloatArray:
+        """How much of the length of each component's creases, as found in any of these, runs along the lattice, (c,)."""
+        edges = np.concatenate([self.borders, *(each.seamless.creases for each in others)])
+        edges = edges[np.unique(keys_of(edges, self.components.surface), return_index=True)[1]]
+        every, along = (
+            self.components.lengths(some)
+            for some in (edges, edges[run_along_axes(self.components.surface, result, edges)])
+        )
+        return np.where(every > 0, along / np.where(every > 0, every, 1), 1.0)
 
 
 def _is_as_good(bordered: Result, usual: Result, most_l2: float) -> bool:

@@ -220,7 +220,8 @@ def _best_along(
 
 def _without_creases(maps: _Maps, along: MapThrough, options: Options, progress: Progress | None) -> MapThrough:
     """The map, or the one in which no creases run along the lattice, where few of them can and tiles become larger."""
-    if not len(along[1].seamless.creases) or has_direction(along[1]):
+    is_marked = along[1].features is not None
+    if is_marked or not len(along[1].seamless.creases) or has_direction(feature_share(along[1])):
         return along
     plain = maps.attempt(along[0], replace(options, straighten=False), progress)
     if plain is None or worth_along_features(plain[1]) <= worth_along_features(along[1]):

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arguments import FloatArray
+from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
 from ..errors import InputError
 from ..lattice import island_boxes
@@ -17,8 +17,9 @@ from ..layouts.layout_search import Turned
 from ..layouts.packing import pack_islands, packer_name, turns_of
 from ..options import Options
 from ..results import Result
+from ..surface import Surface
 from ..triangles import uv_area
-from .components import Components
+from .components import Components, keys_of
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -33,7 +34,7 @@ _MOST_CUTS = 1.25
 # more of the square.
 _FAR_FEWER_CUTS = 0.6
 _ISOMETRIC_L2 = 1.001
-_TARGET_L2 = 1.05
+TARGET_L2 = 1.05
 _LEAST_FILLED_FOR_CUTS = 0.75
 _ISLANDS_FOR_ONE = 10
 # More of the square than this is rarely filled.
@@ -42,7 +43,7 @@ WELL_FILLED = 0.6
 # more; on others it takes seconds. Where they are to be few, they are divided further only if less is filled, and into
 # more than three only if it is less still.
 _NEARLY_FILLED = 0.7
-_SMALL_MESH = 5000  # triangles
+SMALL_MESH = 5000  # triangles
 _HALF_FILLED = 0.5
 _HARDLY_FILLED = 0.4
 _MOST_WHERE_FEW = 3
@@ -64,6 +65,8 @@ _FEATURES_FOR_TILES = 0.25
 # in common with them, and those along it are worth half.
 _FEATURES_IN_COMMON = 0.75
 _WORTH_WITHOUT_DIRECTION = 0.5
+# Of the length of an edge along an axis.
+_ROUNDING = 1e-6
 
 
 def may_replace_map(
@@ -85,7 +88,7 @@ def may_replace_map(
     saves_cuts = _saves_many_cuts(symmetric, usual)
     most_l2 = _MOST_L2 * usual.distortion.l2_stretch
     if saves_cuts:
-        most_l2 = max(most_l2, _TARGET_L2)
+        most_l2 = max(most_l2, TARGET_L2)
     if not (
         symmetric.solved.tolist() == usual.solved.tolist()
         and defects(symmetric) <= defects(usual)
@@ -112,7 +115,7 @@ def fills_badly(usual: Result, keeps_few: bool, progress: Progress | None = None
     """Whether two fifths of the square, three tenths with a small mesh, half of it where islands are to be few, stay
     empty even if it is packed tightly; False where that cannot be known."""
     can_be_known = packer_name() is not None and island_count(usual) <= _MOST_PACKED
-    usually = _NEARLY_FILLED if len(usual.island) <= _SMALL_MESH else WELL_FILLED
+    usually = _NEARLY_FILLED if len(usual.island) <= SMALL_MESH else WELL_FILLED
     most = _HALF_FILLED if keeps_few else usually
     return can_be_known and _filled_when_packed(usual, progress) < most
 
@@ -192,19 +195,34 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     )
 
 
-def has_direction(result: Result) -> bool:
-    """Whether most creases of a seamless map run along its lattice, or others are marked as features."""
-    return result.features is not None or feature_share(result) >= _FEATURES_IN_COMMON
+def has_direction(share: FloatArray | float) -> NDArray[np.bool_] | bool:
+    """Whether most creases run along the lattice, with this share of them."""
+    return share >= _FEATURES_IN_COMMON
 
 
 def worth_along_features(result: Result) -> float:
     """By which seamless maps are compared: features along the lattice, little stretch, and large tiles everywhere."""
+    return float(seamless_worth(feature_share(result), result.distortion.l2_stretch, result))
+
+
+def seamless_worth(share: FloatArray | float, l2_stretch: FloatArray | float, result: Result) -> FloatArray:
+    """The same of parts of the result with these shares of features and these stretches."""
     is_uneven = any(finding.code == "HIGH_DISTORTION" for finding in result.warnings)
     return (
-        feature_share(result) * (1.0 if has_direction(result) else _WORTH_WITHOUT_DIRECTION)
-        - _FEATURES_FOR_STRETCH * result.distortion.l2_stretch
+        share * np.where(has_direction(share), 1.0, _WORTH_WITHOUT_DIRECTION)
+        - _FEATURES_FOR_STRETCH * np.asarray(l2_stretch)
         + _FEATURES_FOR_TILES * (np.log2(result.seamless.tile_size) - is_uneven)
     )
+
+
+def run_along_axes(surface: Surface, result: Result, edges: IndexArray) -> NDArray[np.bool_]:
+    """Whether edges, (e, 2), are parallel to u or v, on one of their sides at least."""
+    triangles = surface.triangles
+    keys = keys_of(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), surface)
+    along = np.abs(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv).reshape(-1, 2)
+    with np.errstate(invalid="ignore"):
+        is_along = along.min(axis=1) <= _ROUNDING * along.max(axis=1)
+    return np.isin(keys_of(edges, surface), keys[is_along])
 
 
 def reached_up_to(target: float, result: Result, options: Options) -> float:

@@ -38,9 +38,14 @@ HARD = {
 }
 
 
+def joined(mesh: Mesh, options: lsgp.Options = TILE) -> lsgp.Result:
+    """The map whose texture runs on across creases, also where it were better to end there."""
+    return lsgp.auto_unwrap(surface(mesh), preset="tile", options=options, creases=False)
+
+
 @cache
 def of(name: str, along: bool = True) -> lsgp.Result:
-    return lsgp.auto_unwrap(surface(HARD[name]), preset="tile", options=TILE if along else PLAIN)
+    return joined(HARD[name], TILE if along else PLAIN)
 
 
 def creases(mesh: Mesh) -> NDArray[np.int64]:
@@ -74,7 +79,7 @@ def test_every_crease_lies_on_a_line_of_the_lattice(name: str) -> None:
 def test_creases_whose_lengths_depend_on_each_other_lie_on_fine_lines(teeth: int) -> None:
     """Its cones follow from each other by halves and thirds of lengths, all of which have to be whole."""
     mesh = closed.toothed_wheel(teeth, 0.2)
-    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
+    result = joined(mesh)
     both = 256 * ends(result, creases(mesh))
     assert ((both[:, 0] == both[:, 1]) & (both[:, 0] == np.round(both[:, 0]))).any(axis=1).all()
     assert result.seamless.feature_share == 1
@@ -89,9 +94,9 @@ def test_that_costs_at_most_a_tenth_of_stretch(name: str) -> None:
 def test_every_component_has_the_cones_that_serve_it() -> None:
     """Cones for creases stretch the star too much, and without them the prism keeps less of its creases."""
     prism, star = closed.prism(6, 2, 1.0), closed.star(5, 0.5, 0.5)
-    alone = [lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE) for mesh in (prism, star)]
+    alone = [joined(mesh) for mesh in (prism, star)]
     both = meshes.merge([prism, star])
-    result = lsgp.auto_unwrap(surface(both), preset="tile", options=TILE)
+    result = joined(both)
     assert sorted(result.cones) == sorted([*alone[0].cones, *(len(prism.positions) + alone[1].cones)])
     assert result.seamless.feature_share == 1
     assert undeclared_faults(surface(both), result, TILE) == []
@@ -121,6 +126,52 @@ def test_creases_of_coarse_round_shapes_do_not_make_tiles_small(mesh: Mesh) -> N
     assert lsgp.auto_unwrap(marked, preset="tile").features.share > 0.25
 
 
+ROUND = {
+    "cylinder": closed.with_polygon_caps(32, (1, 1), 2),
+    "rod": closed.with_polygon_caps(24, (1, 1), 16),
+    "disk": closed.with_polygon_caps(32, (2, 2), 0.3),
+    "prism": closed.with_polygon_caps(12, (1, 1), 2),
+    "cone": closed.with_polygon_caps(32, (1, 0), 2),
+    "cut cone": closed.with_polygon_caps(32, (1, 0.5), 2),
+}
+
+
+@pytest.mark.parametrize("name", ROUND)
+def test_round_parts_end_at_rims_that_cannot_run_along_the_lattice(name: str) -> None:
+    """Their caps have no place for cones inside; ended there, all but the apex of a cone unrolls."""
+    given = surface(ROUND[name])
+    result, usual = lsgp.auto_unwrap(given, preset="tile"), joined(ROUND[name])
+    assert len(result.borders) > 0 and len(usual.borders) == 0
+    assert result.distortion.l2_stretch < (1.005 if name == "cone" else 1 + 1e-9) < usual.distortion.l2_stretch
+    assert len(result.cones) == (name == "cone")
+    assert result.seamless.tile_size > 0.9 * usual.seamless.tile_size
+    assert undeclared_faults(replace(given, borders=result.borders), result, TILE) == []
+    if "cone" in name:
+        return
+    positions, triangles, _ = ROUND[name]
+    halfedges = creases(ROUND[name])
+    sides = halfedges[np.ptp(positions[triangles][halfedges // 3, :, 2], axis=1) > 0]
+    rims = ends(result, sides)
+    assert len(rims) > 0 and (rims[:, 0] == rims[:, 1]).any(axis=1).all()
+
+
+def test_only_the_components_that_need_it_end_at_creases() -> None:
+    box, rod = closed.box(2, (1, 1, 1)), ROUND["cylinder"]
+    both = meshes.merge([box, rod])
+    result = lsgp.auto_unwrap(surface(both), preset="tile")
+    assert result.borders.min() >= len(box.positions)
+    assert sorted(result.cones) == sorted(lsgp.auto_unwrap(surface(box), preset="tile").cones)
+
+
+@pytest.mark.parametrize("marked", ["cones", "seams", "features"])
+def test_marked_parts_do_not_end_at_creases(marked: str) -> None:
+    mesh = ROUND["cylinder"]
+    cones = lsgp.place_cones(surface(mesh), lattice="square").cones if marked == "cones" else ()
+    rim = np.stack([np.arange(32), np.roll(np.arange(32), -1)], axis=1)
+    given = surface(mesh) if marked == "cones" else replace(surface(mesh), **{marked: rim})
+    assert len(lsgp.auto_unwrap(given, cones, preset="tile").borders) == 0
+
+
 SOFT = [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1), closed.noise_sphere(3, 0.04, 1)]
 
 
@@ -130,7 +181,7 @@ def test_creases_are_followed_as_far_as_marked_ones() -> None:
     given = surface(hard_mesh("anchor"))
     marked = replace(given, features=lsgp.feature_edges(given, angle=SHARP))
     share = lsgp.auto_unwrap(marked, preset="tile").features.share
-    assert lsgp.auto_unwrap(given, preset="tile").seamless.feature_share >= share - 0.05 > 0.85
+    assert joined(hard_mesh("anchor")).seamless.feature_share >= share - 0.05 > 0.85
 
 
 @pytest.mark.parametrize("mesh", SOFT)
@@ -144,7 +195,7 @@ def test_soft_surfaces_are_laid_out_as_without(mesh: Mesh) -> None:
 def test_creases_off_the_lattice_are_named() -> None:
     """Those of this gear contradict each other; the warning and the share say which are off, and how much of them."""
     mesh = closed.gear(4, 0.3, 2)
-    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
+    result = joined(mesh)
     found = creases(mesh)
     both = ends(result, found)
     off = (both[:, 0] != both[:, 1]).all(axis=1)
@@ -166,7 +217,7 @@ def test_tiles_of_a_given_size_keep_what_they_can() -> None:
     """Not all creases of this gear find a place on 32 tiles; before some were released, none did."""
     mesh = closed.gear(4, 0.3, 2)
     options = replace(TILE, seamless=replace(TILE.seamless, tiles=32))
-    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=options)
+    result = joined(mesh, options)
     both = ends(result, creases(mesh))
     assert result.seamless.tiles == 32
     assert 0.25 < result.seamless.feature_share < 1
@@ -179,7 +230,7 @@ def test_creases_of_a_small_part_do_not_take_others_off_the_lattice(small: Mesh)
     """Not all of its creases find a place, and none on tiles as large as those of the box."""
     box = HARD["box"]
     mesh = meshes.merge([box, meshes.transform(small, 1, 0.05)])
-    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
+    result = joined(mesh)
     both = ends(result, creases(mesh)[: len(creases(box))])
     assert (both[:, 0] == both[:, 1]).any(axis=1).all(), "the box keeps what it has alone"
     assert result.seamless.tiles <= 128
@@ -239,7 +290,7 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
 def test_lines_without_a_free_coordinate_are_laid_out(corners: int, seed: int) -> None:
     """A few triangles without cuts and cones: nothing has to be rounded but creases, of which few are left."""
     mesh = broken.scrap(corners, 2.0, seed)
-    assert undeclared_faults(surface(mesh), lsgp.auto_unwrap(surface(mesh), preset="tile"), TILE) == []
+    assert undeclared_faults(surface(mesh), joined(mesh), TILE) == []
 
 
 def test_all_creases_of_a_plate_with_many_tunnels_run_along_the_lattice() -> None:
@@ -261,5 +312,5 @@ def test_tile_of_a_plate_with_many_tunnels_reports_progress_and_can_be_stopped_l
         return done < 0.9
 
     with pytest.raises(lsgp.Cancelled):
-        lsgp.auto_unwrap(surface(tunnels.tunneled_plate(4, 3, 1)), preset="tile", progress=stop_late)
+        lsgp.auto_unwrap(surface(tunnels.tunneled_plate(4, 3, 1)), preset="tile", creases=False, progress=stop_late)
     assert reports == sorted(reports) and len(reports) > 20
