@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from itertools import pairwise
 
 import bmesh
@@ -460,13 +460,15 @@ class UvMap:
                     found.append(np.arctan2(along[1], along[0]))
         return np.array(found)
 
-    def crossings(self, rotation_order: int = 4) -> list[tuple[complex, complex, float]]:
-        """For each split edge the turn and the shift that lead from one side to the other, and the deviation from them.
+    def crossings(
+        self, rotation_order: int = 4, but: Collection[tuple[int, int]] = ()
+    ) -> list[tuple[complex, complex, float]]:
+        """For each split edge but those, pairs of vertices in ascending order, the turn and the shift that lead from one side to the other, and the deviation from them.
 
         The turn is the nearest one of a lattice; all is exact where that is a quarter turn.
         """
         found = []
-        for edge in self.split_edges():
+        for edge in self.split_edges() - set(but):
             left, right = (self.uv[list(loops)] @ (1, 1j) for loops in self.sides[edge])
             turns = np.angle((right[1] - right[0]) / (left[1] - left[0])) * rotation_order / (2 * np.pi)
             quarters = round(turns) * 4 / rotation_order
@@ -476,11 +478,13 @@ class UvMap:
             found.append((complex(turn), complex(shift), float(abs(right[1] - turn * left[1] - shift))))
         return found
 
-    def tile_error(self, rotation_order: int = 4, cell: float = 1.0) -> float:
-        """How far split edges are from one turn and one shift by whole cells of the lattice; 0 is seamless."""
+    def tile_error(
+        self, rotation_order: int = 4, cell: float = 1.0, but: Collection[tuple[int, int]] = ()
+    ) -> float:
+        """How far split edges, but for those, are from one turn and one shift by whole cells of the lattice; 0 is seamless."""
         second = np.exp(1j * np.pi / 3) if rotation_order in (3, 6) else 1j
         worst = 0.0
-        for _, shift, missed in self.crossings(rotation_order):
+        for _, shift, missed in self.crossings(rotation_order, but):
             rows = round(shift.imag / second.imag / cell)
             columns = round((shift - rows * second * cell).real / cell)
             worst = max(worst, missed, abs(shift - cell * (columns + rows * second)))

@@ -101,8 +101,8 @@ class UV_OT_cone_auto_unwrap(
     creases: bpy.props.BoolProperty(
         name="Creases as Boundaries",
         description="Cut hard surfaces at their creases and at edges marked sharp where that removes stretch; Paint "
-        "does so only where many cones would be needed otherwise, Tile never. Components with marked cones or seams "
-        "are not affected",
+        "does so only where many cones would be needed otherwise, Tile only where creases cannot run along the tiles. "
+        "Components with marked cones or seams are not affected",
         default=True,
     )
     straighten: bpy.props.BoolProperty(
@@ -166,8 +166,7 @@ class UV_OT_cone_auto_unwrap(
         if body is not None:
             body.prop(self, "cuts")
             body.prop(self, "seams")
-            if self.preset != "TILE":
-                body.prop(self, "creases")
+            body.prop(self, "creases")
             body.prop(self, "straighten")
             if self.preset != "TILE":
                 body.prop(self, "compact")

@@ -41,7 +41,7 @@ _TRYING = 0.5
 # Where the square stays empty, islands are divided as if they had so many of them.
 _SQUARES = 2.0
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
-# well and the texture runs on; None: it has to run on everywhere.
+# well and the texture runs on; None: it runs on wherever creases run along the tiles.
 _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 # Other components may end there, too, where creases carry this share of their curvature, if their map gains by it.
 _LEAST_SHARE_TO_TRY = 0.5
@@ -106,7 +106,9 @@ def auto_unwrap(
         tenths less, where it exceeds 0.002; an island for two cones fewer is no further one, unless the component is
         small. Or where less than three fifths of the square are filled, and at no cost of stretch a tenth more with
         them, a quarter for one further island, or two fifths for two (or a tenth; with "bake" any number). The latter
-        two only without cones, `count` or pins.
+        two only without cones, `count` or pins. In seamless layouts on squares, without marked cones, seams and
+        features: those of hard components of which less than three quarters could run along the lattice otherwise, or
+        at an L2 stretch above 1.1, if that is worth it; all other cuts stay invisible.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -205,18 +207,19 @@ def crease_choices(
 
     "bake" requires all; "paint" those of components with curvature at more than 24 vertices, since fewer can be cones,
     across which the texture continues. Both may gain by those of other components with half of their curvature on
-    creases, unless the number of cones is given. "tile", and options for seamless layouts, straight borders or
-    prescribed turning: none.
+    creases, unless the number of cones is given. Seamless layouts on squares, as with "tile", may gain by those of hard
+    components where no cones, seams or features are marked. With straight borders or prescribed turning: none.
     sharp, errors: as for `crease_borders`.
     """
     most_corners = _MOST_CORNERS[preset]
     if options.border != "free" or options.loop_turning:
         return CreaseChoices(surface)
     if options.seamless is not None:
-        if not (given.is_free and follows_features(surface, options)) or len(surface.features):
-            return CreaseChoices(surface)
-        possible = crease_borders(surface, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
-        return CreaseChoices(surface, possible if len(possible) else None, preset)
+        is_free = given.is_free and not len(surface.features) and follows_features(surface, options)
+        further = crease_borders(surface, sharp=sharp) if is_free else ()
+        return CreaseChoices(surface, further if len(further) else None, preset)
+    if most_corners is None:
+        return CreaseChoices(surface)
     required = crease_borders(surface, given.cones, sharp=sharp, most_corners=most_corners)
     if given.count is not None:
         return CreaseChoices(_ending_at(surface, required))

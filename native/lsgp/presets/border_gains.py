@@ -15,7 +15,6 @@ from ..results import Result
 from .components import Components, keys_of
 from .map_comparison import (
     SMALL_MESH,
-    TARGET_L2,
     WELL_FILLED,
     defects,
     has_direction,
@@ -38,6 +37,7 @@ _CONES_FOR_ISLAND = 2
 _LEAST_FILLED_WITH_BORDERS = 0.7
 # Share of creases along the lattice that is worth as much as a texture that runs on across them.
 _WORTH_OF_RUNNING_ON = 0.15
+_MOST_L2 = 1.1
 # Of the area, where the mesh is not small: seamless layouts take long, and what is smaller is hardly seen.
 _LEAST_AREA = 0.05
 # Of the stretch of maps that are the same but for rounding.
@@ -145,9 +145,8 @@ class AlongLattice:
     borders: IndexArray
 
     def may_gain(self, usual: Result, chosen: NDArray[np.intp], progress: Progress | None) -> NDArray[np.bool_]:
-        """Those many of whose creases do not, or that are stretched more than cones are placed for, if they are not
-        small."""
-        is_stretched = self.components.stretches(usual) > TARGET_L2
+        """Those many of whose creases do not, or that are stretched by more than a tenth, if they are not small."""
+        is_stretched = self.components.stretches(usual) > _MOST_L2
         return self._if_large((is_stretched | ~has_direction(self._shares(usual, usual)))[chosen], chosen)
 
     def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:

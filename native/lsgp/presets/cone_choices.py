@@ -142,7 +142,7 @@ def best_map(
         best = _best_along(maps, along, best, options, is_chosen, next(stages))
     elif not is_chosen:
         best = maps.through(best[0], options, next(stages))
-    if follows_features(solver.surface, options):
+    if options.seamless is not None:
         best = _without_creases(maps, best, options, share_of(progress, 1.0, 1.0))
     return best[0], best[0].told(best[1], options)
 

@@ -34,7 +34,7 @@ _MOST_CUTS = 1.25
 # more of the square.
 _FAR_FEWER_CUTS = 0.6
 _ISOMETRIC_L2 = 1.001
-TARGET_L2 = 1.05
+_TARGET_L2 = 1.05
 _LEAST_FILLED_FOR_CUTS = 0.75
 _ISLANDS_FOR_ONE = 10
 # More of the square than this is rarely filled.
@@ -88,7 +88,7 @@ def may_replace_map(
     saves_cuts = _saves_many_cuts(symmetric, usual)
     most_l2 = _MOST_L2 * usual.distortion.l2_stretch
     if saves_cuts:
-        most_l2 = max(most_l2, TARGET_L2)
+        most_l2 = max(most_l2, _TARGET_L2)
     if not (
         symmetric.solved.tolist() == usual.solved.tolist()
         and defects(symmetric) <= defects(usual)

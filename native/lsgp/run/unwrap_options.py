@@ -55,9 +55,9 @@ AUTO, AUTO_COUNT = "auto", "auto:"
 # What presets do unless --no-NAME is given: the presets that do it, and what the option changes.
 _PRESET_SWITCHES = {
     "creases": (
-        "paint or bake",
+        "paint, tile or bake",
         "do not cut hard surfaces at their creases, so that the texture continues across them; by default paint and "
-        "bake cut there where hardly any stretch remains",
+        "bake cut there where hardly any stretch remains, and tile where creases cannot run along the tiles",
     ),
     "straighten": (
         "paint, tile or bake",

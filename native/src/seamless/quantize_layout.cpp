@@ -116,9 +116,41 @@ void LayoutQuantizer::prepare_search() {
                   sees_triangles ? cone_triangles().triangles : Array<MovingTriangle>{}, lattice_);
 }
 
+// Of a layout without cuts, so that most of its straight sides run along the lattice; none if few are parallel.
+std::optional<Complex> LayoutQuantizer::turn_along_sides(const Eigen::VectorXcd& position) const {
+  constexpr double same_direction = 1e-4;  // radians
+  constexpr double least_share = 0.25;     // of the boundaries' length
+  const double turn = 2 * M_PI / lattice_.rotation_order();
+  Array<std::pair<double, double>> sides;  // angle and length
+  double all = 0;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    if (mesh_.twin[h] != none) continue;
+    const Complex side = position[cut_mesh_.copy_of_corner[next(h)]] - position[cut_mesh_.copy_of_corner[h]];
+    const double angle = std::remainder(std::arg(side), turn);
+    sides.emplace_back(angle < -turn / 2 + same_direction ? angle + turn : angle, std::abs(side));
+    all += std::abs(side);
+  }
+  std::sort(sides.begin(), sides.end());
+  double most = least_share * all, length = 0;
+  std::optional<Complex> best;
+  for (std::size_t first = 0, end = 0; first < sides.size(); length -= sides[first++].second) {
+    for (; end < sides.size() && sides[end].first <= sides[first].first + same_direction; ++end) {
+      length += sides[end].second;
+    }
+    if (!(length > most)) continue;
+    most = length;
+    const auto longest = std::max_element(sides.begin() + static_cast<std::ptrdiff_t>(first),
+                                          sides.begin() + static_cast<std::ptrdiff_t>(end),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    best = std::polar(1.0, -longest->first);
+  }
+  return best;
+}
+
 void LayoutQuantizer::set_start(const ComponentMap& map) {
-  const std::optional<Complex> turn = find_upward_turn(map.position).turn_to_lattice();
+  std::optional<Complex> turn = find_upward_turn(map.position).turn_to_lattice();
   is_turned_ = turn.has_value();
+  if (!turn && cut_graph_.cuts.empty()) turn = turn_along_sides(map.position);
   start_ =
       std::sqrt(geometry_.total_area / map.uv_area) * map.position * turn.value_or(std::conj(upright(map.position)));
   energy_ = measure_energy(start_);

@@ -117,6 +117,7 @@ class LayoutQuantizer {
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
   bool has_many_terms() const;
   const Reduction& moving_reduction() const { return local_ ? *local_ : reduction_.reduction; }
+  std::optional<Complex> turn_along_sides(const Eigen::VectorXcd& position) const;
   void set_start(const ComponentMap& map);
   void align_features();
   std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
