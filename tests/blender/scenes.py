@@ -463,9 +463,10 @@ class UvMap:
     def crossings(
         self, rotation_order: int = 4, but: Collection[tuple[int, int]] = ()
     ) -> list[tuple[complex, complex, float]]:
-        """For each split edge but those, pairs of vertices in ascending order, the turn and the shift that lead from one side to the other, and the deviation from them.
+        """For each split edge the turn and the shift that lead from one side to the other, and the deviation from them.
 
-        The turn is the nearest one of a lattice; all is exact where that is a quarter turn.
+        The turn is the nearest one of a lattice; all is exact where that is a quarter turn. but: edges that are left
+        out, as pairs of vertices in ascending order.
         """
         found = []
         for edge in self.split_edges() - set(but):
@@ -478,10 +479,8 @@ class UvMap:
             found.append((complex(turn), complex(shift), float(abs(right[1] - turn * left[1] - shift))))
         return found
 
-    def tile_error(
-        self, rotation_order: int = 4, cell: float = 1.0, but: Collection[tuple[int, int]] = ()
-    ) -> float:
-        """How far split edges, but for those, are from one turn and one shift by whole cells of the lattice; 0 is seamless."""
+    def tile_error(self, rotation_order: int = 4, cell: float = 1.0, but: Collection[tuple[int, int]] = ()) -> float:
+        """How far split edges are from one turn and one shift by whole cells of the lattice; 0 is seamless."""
         second = np.exp(1j * np.pi / 3) if rotation_order in (3, 6) else 1j
         worst = 0.0
         for _, shift, missed in self.crossings(rotation_order, but):

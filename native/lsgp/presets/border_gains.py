@@ -167,7 +167,7 @@ class AlongLattice:
         return is_some & (is_large or len(self.components.surface.triangles) <= SMALL_MESH)
 
     def _shares(self, result: Result, *others: Result) -> FloatArray:
-        """How much of the length of each component's creases, as found in any of these, runs along the lattice, (c,)."""
+        """Of the length of each component's creases, as found in any of these, what runs along the lattice, (c,)."""
         edges = np.concatenate([self.borders, *(each.seamless.creases for each in others)])
         edges = edges[np.unique(keys_of(edges, self.components.surface), return_index=True)[1]]
         every, along = (

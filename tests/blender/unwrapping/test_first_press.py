@@ -9,6 +9,7 @@ from installed import addon
 from one_blender import one_blender
 from scenes import UvMap, covered_twice
 
+cuts = addon.jobs.tasks.cuts
 Faces, Groups = addon.mesh.region_read.Faces, addon.mesh.region_read.Groups
 # In every Blender: primitives, modifiers that stay on the object or were applied, materials and shared meshes.
 LARGE = (suzanne, text, screw, scan, kit)
@@ -38,8 +39,9 @@ def densities_of(obj, uv_map):
 
 
 def creases_of(obj):
-    """The edges at which hard parts may end."""
+    """The edges at which hard parts may end, with cuts where they usually run."""
     region = addon.mesh.region_read.read_region(obj, Faces.ALL, Groups("uv_cones"), subdivided=True)
+    region = cuts.with_cut_costs(region, cuts.CutChoice())
     edges = addon.core.native.lsgp.crease_borders(region.surface, sharp=region.sharp)
     return {tuple(sorted(edge)) for edge in edges.tolist()}
 
