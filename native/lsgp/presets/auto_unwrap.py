@@ -59,8 +59,9 @@ def preset_options(preset: Preset) -> Options:
     """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
 
     preset: "paint" preserves lengths, for texture painting, and cuts islands that would leave most of the square empty;
-        "tile" makes seams invisible for a tileable texture of squares; "bake" is for computed textures: it preserves
-        lengths, cuts islands so that they fill the square, and hard surfaces at their creases.
+        "tile" makes seams invisible for a tileable texture of squares, except where hard parts end at creases that
+        cannot run along the tiles; "bake" is for computed textures: it preserves lengths, cuts islands so that they
+        fill the square, and hard surfaces at their creases.
     With every preset no island overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
