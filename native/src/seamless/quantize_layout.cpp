@@ -133,16 +133,19 @@ std::optional<Complex> LayoutQuantizer::turn_along_sides(const Eigen::VectorXcd&
   std::sort(sides.begin(), sides.end());
   double most = least_share * all, length = 0;
   std::optional<Complex> best;
-  for (std::size_t first = 0, end = 0; first < sides.size(); length -= sides[first++].second) {
+  std::size_t end = 0;
+  for (std::size_t first = 0; first < sides.size(); ++first) {
     for (; end < sides.size() && sides[end].first <= sides[first].first + same_direction; ++end) {
       length += sides[end].second;
     }
-    if (!(length > most)) continue;
-    most = length;
-    const auto longest = std::max_element(sides.begin() + static_cast<std::ptrdiff_t>(first),
-                                          sides.begin() + static_cast<std::ptrdiff_t>(end),
-                                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    best = std::polar(1.0, -longest->first);
+    if (length > most) {
+      most = length;
+      const auto longest = std::max_element(sides.begin() + static_cast<std::ptrdiff_t>(first),
+                                            sides.begin() + static_cast<std::ptrdiff_t>(end),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+      best = std::polar(1.0, -longest->first);
+    }
+    length -= sides[first].second;
   }
   return best;
 }
