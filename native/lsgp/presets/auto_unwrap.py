@@ -261,12 +261,14 @@ def best_at_creases(
         components = Components.of(surface)
         possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))
         middle = (_TRYING + 1.0) / 2
-        gains: tuple[tuple[BorderGain, float, float], ...] = (
-            (LessStretch(components, options.square_share), _TRYING, middle),
-            (FullerSquare(components, options.square_share, choices.preset == "paint"), middle, 1.0),
-        )
+        gains: tuple[tuple[BorderGain, float, float], ...]
         if options.seamless is not None:
             gains = ((AlongLattice(components, choices.possible), _TRYING, 1.0),)
+        else:
+            gains = (
+                (LessStretch(components, options.square_share), _TRYING, middle),
+                (FullerSquare(components, options.square_share, choices.preset == "paint"), middle, 1.0),
+            )
         for gain, begin, end in gains:
             best = _gaining(gain, possible, best, make, share_of(progress, begin, end))
     if progress is not None:

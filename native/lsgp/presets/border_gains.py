@@ -147,12 +147,14 @@ class AlongLattice:
     def may_gain(self, usual: Result, chosen: NDArray[np.intp], progress: Progress | None) -> NDArray[np.bool_]:
         """Those many of whose creases do not, or that are stretched by more than a tenth, if they are not small."""
         is_stretched = self.components.stretches(usual) > _MOST_L2
-        return self._if_large((is_stretched | ~has_direction(self._shares(usual, usual)))[chosen], chosen)
+        shares = self._shares(usual, self._creases(usual))
+        return self._if_large((is_stretched | ~has_direction(shares))[chosen], chosen)
 
     def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
         """Where that is worth that the texture does not run on across their creases, if they are not small."""
+        creases = self._creases(bordered, usual)
         one, other = (
-            seamless_worth(self._shares(result, bordered, usual), self.components.stretches(result), result)
+            seamless_worth(self._shares(result, creases), self.components.stretches(result), result)
             for result in (bordered, usual)
         )
         return self._if_large((one >= other + _WORTH_OF_RUNNING_ON)[chosen], chosen)
@@ -166,10 +168,13 @@ class AlongLattice:
         is_large = areas[chosen][is_some].sum() >= _LEAST_AREA * areas.sum()
         return is_some & (is_large or len(self.components.surface.triangles) <= SMALL_MESH)
 
-    def _shares(self, result: Result, *others: Result) -> FloatArray:
-        """Of the length of each component's creases, as found in any of these, what runs along the lattice, (c,)."""
-        edges = np.concatenate([self.borders, *(each.seamless.creases for each in others)])
-        edges = edges[np.unique(keys_of(edges, self.components.surface), return_index=True)[1]]
+    def _creases(self, *results: Result) -> IndexArray:
+        """The possible borders and the creases found in any of these, (e, 2)."""
+        edges = np.concatenate([self.borders, *(result.seamless.creases for result in results)])
+        return edges[np.unique(keys_of(edges, self.components.surface), return_index=True)[1]]
+
+    def _shares(self, result: Result, edges: IndexArray) -> FloatArray:
+        """Of the length of each component's edges, (e, 2) in all, what runs along the lattice, (c,); 1 without any."""
         every, along = (
             self.components.lengths(some)
             for some in (edges, edges[run_along_axes(self.components.surface, result, edges)])

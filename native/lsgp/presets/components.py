@@ -42,8 +42,7 @@ class Components:
 
     def of_edges(self, edges: IndexArray) -> NDArray[np.intp]:
         """The component of each edge of the surface; edges: (e, 2)."""
-        triangles = self.surface.triangles
-        sides = keys_of(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), self.surface)
+        sides = side_keys(self.surface)
         order = np.argsort(sides, kind="stable")
         return self.of_triangle[order[np.searchsorted(sides, keys_of(edges, self.surface), sorter=order)] // 3]
 
@@ -94,6 +93,11 @@ class Components:
     def _sums(self, component: NDArray[np.intp], values: FloatArray) -> FloatArray:
         is_of_one = component >= 0
         return np.bincount(component[is_of_one], values[is_of_one], minlength=self.count)
+
+
+def side_keys(surface: Surface) -> NDArray[np.int64]:
+    """The keys of the sides of the triangles, (3m,), corner by corner."""
+    return keys_of(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), surface)
 
 
 def keys_of(edges: IndexArray, surface: Surface) -> NDArray[np.int64]:

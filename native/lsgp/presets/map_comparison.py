@@ -19,7 +19,7 @@ from ..options import Options
 from ..results import Result
 from ..surface import Surface
 from ..triangles import uv_area
-from .components import Components, keys_of
+from .components import Components, keys_of, side_keys
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -217,12 +217,10 @@ def seamless_worth(share: FloatArray | float, l2_stretch: FloatArray | float, re
 
 def run_along_axes(surface: Surface, result: Result, edges: IndexArray) -> NDArray[np.bool_]:
     """Whether edges, (e, 2), are parallel to u or v, on one of their sides at least."""
-    triangles = surface.triangles
-    keys = keys_of(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), surface)
     along = np.abs(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv).reshape(-1, 2)
     with np.errstate(invalid="ignore"):
         is_along = along.min(axis=1) <= _ROUNDING * along.max(axis=1)
-    return np.isin(keys_of(edges, surface), keys[is_along])
+    return np.isin(keys_of(edges, surface), side_keys(surface)[is_along])
 
 
 def reached_up_to(target: float, result: Result, options: Options) -> float:

@@ -25,7 +25,7 @@ void KeptComponents::update(const std::function<Work(Work)>& prepare) {
 }
 
 std::shared_ptr<ComponentResults> KeptComponents::earlier_results(const Component& component) const {
-  for (const auto& kept : earlier_) {
+  for (const KeptComponents* kept = earlier_.get(); kept != nullptr; kept = kept->earlier_.get()) {
     const PerComponent<Component>& components = kept->work_.topology.components;
     // In the order of their first triangles.
     const auto known = std::lower_bound(

@@ -22,9 +22,8 @@ class KeptComponents {
  public:
   // keeps: systems and results, from one call to the next, rather than until each component is done.
   explicit KeptComponents(bool keeps) : keeps_(keeps) {}
-  // For a further surface. Components that are the same there and on the earlier ones share what is found on them.
-  explicit KeptComponents(Array<std::shared_ptr<const KeptComponents>> earlier)
-      : keeps_(true), earlier_(std::move(earlier)) {}
+  // For a further surface. Components that are the same there and on earlier ones share what is found on them.
+  explicit KeptComponents(std::shared_ptr<const KeptComponents> earlier) : keeps_(true), earlier_(std::move(earlier)) {}
   KeptComponents(const KeptComponents&) = delete;
   KeptComponents& operator=(const KeptComponents&) = delete;
 
@@ -58,7 +57,7 @@ class KeptComponents {
   std::shared_ptr<ComponentResults> earlier_results(const Component& component) const;
 
   const bool keeps_;
-  const Array<std::shared_ptr<const KeptComponents>> earlier_;
+  const std::shared_ptr<const KeptComponents> earlier_;  // of the surface before, or null
   Work work_;
   PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
   PerComponent<std::shared_ptr<ComponentResults>> results_;

@@ -139,8 +139,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
 }  // namespace
 
 struct Solver::Kept {
-  Array<std::shared_ptr<const KeptComponents>> earlier;
-  std::shared_ptr<KeptComponents> components = std::make_shared<KeptComponents>(earlier);
+  std::shared_ptr<KeptComponents> components = std::make_shared<KeptComponents>(true);
   std::shared_ptr<std::atomic<bool>> is_busy = std::make_shared<std::atomic<bool>>(false);
 };
 
@@ -166,11 +165,10 @@ class Turn {
 }  // namespace
 
 Solver::Solver(Surface surface) : surface_(std::move(surface)), kept_(std::make_unique<Kept>()) {}
-Solver::Solver(Surface surface, const Solver& earlier) : surface_(std::move(surface)) {
-  Array<std::shared_ptr<const KeptComponents>> all = earlier.kept_->earlier;
-  all.push_back(earlier.kept_->components);
-  kept_ = std::make_unique<Kept>(Kept{all, std::make_shared<KeptComponents>(all), earlier.kept_->is_busy});
-}
+Solver::Solver(Surface surface, const Solver& earlier)
+    : surface_(std::move(surface)),
+      kept_(std::make_unique<Kept>(
+          Kept{std::make_shared<KeptComponents>(earlier.kept_->components), earlier.kept_->is_busy})) {}
 Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 

@@ -29,6 +29,13 @@ REVIEWED = {
     "api/cut_paths.cpp": [
         ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
     ],
+    "api/kept_components.cpp": [
+        (
+            "for (const KeptComponents* kept = earlier_.get(); kept != nullptr; kept = kept->earlier_.get())",
+            LINKED,
+            SHORT,
+        ),
+    ],
     "api/measure_distortion.cpp": [
         ("for (std::size_t i = 0, end = 0; i < sides.size(); i = end)", "passes a side each time", SHORT),
         ("for (end = i + 1; same_edge(i, end);)", "passes a side each time", SHORT),
