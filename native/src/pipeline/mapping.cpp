@@ -149,9 +149,11 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
   }
   if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
-  if (options_.mode == Mode::low_stretch && options_.stretch > 0 && found.defects() == 0) {
-    repair_on(system_, task_).relax(found.map);
-    straighten(found.map);
+  if (found.defects() == 0) {
+    const bool is_relaxed = options_.mode == Mode::low_stretch && options_.stretch > 0;
+    if (is_relaxed) repair_on(system_, task_).relax(found.map);
+    if (is_relaxed || options_.seamless) straighten(found.map);
+    if (options_.seamless) found.map.natural_l2 = 0;  // on the lattice, islands stay as they are
   }
   found.map.repair = report_.value_or(RepairReport{});
   findings.insert(findings.end(), found.findings.begin(), found.findings.end());
