@@ -190,6 +190,8 @@ SOURCES = {
         *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
         *("repair", "pipeline", "split", "placement", "seamless"),
     ),
+    "assembly": ("sites", "search", "placement", "quads"),
+    "kept": ("quads", "assembly"),
     "api": (),
 }
 

@@ -2,7 +2,7 @@
 // `place_cones` with data kept from earlier calls on the surface.
 #pragma once
 
-#include "api/kept_components.hpp"
+#include "kept/kept_components.hpp"
 #include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/surface.hpp"

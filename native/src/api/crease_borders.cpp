@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "api/vertex_pairs.hpp"
+#include "assembly/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/vertex_pairs.hpp"
+#include "assembly/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "api/vertex_pairs.hpp"
+#include "assembly/vertex_pairs.hpp"
 #include "lsgp/lsgp.hpp"
 
 namespace lsgp {

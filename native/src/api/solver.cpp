@@ -7,11 +7,11 @@
 #include <atomic>
 #include <utility>
 
-#include "api/assembly.hpp"
 #include "api/cone_placement.hpp"
-#include "api/kept_components.hpp"
+#include "assembly/assembly.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/thread_team.hpp"
+#include "kept/kept_components.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/mapping.hpp"
@@ -102,10 +102,10 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     mapped.results[i] = &result_of_map;
     if (const auto& known = result_of_map.map) {
       map = known->map;
-      found[i] = known->found;
+      found[i] = known->findings;
     } else {
       map = map_component(system, task, options, found[i], monitor);
-      if (keeps_maps && options.seamless) result_of_map.map = KeptMap{map, found[i]};
+      if (keeps_maps && options.seamless) result_of_map.map = FoundMap{map, found[i]};
     }
     kept.release(i);
     if (options.seamless) require_quantizable(component.mesh, map);
@@ -125,7 +125,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   Assembly assembly(surface, components, options, monitor, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (!mapped.maps[i]) continue;
-    KeptMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
+    FoundMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
     assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), mapped.results[i]->map);
   }
   assembly.require_any();

@@ -40,6 +40,14 @@ struct ComponentMap {
   RepairReport repair;
 };
 
+// A map and what was found about it.
+struct FoundMap {
+  ComponentMap map;
+  std::vector<Finding> findings;
+
+  std::size_t defects() const { return map.validity.defects(); }
+};
+
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
 void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);

@@ -69,13 +69,6 @@ Curvature metric_of(ComponentSystem& system, ComponentCones cones, const Curvatu
   return prescribe(system, cones, PrescriptionRule::manual, unsaid);
 }
 
-struct FoundMap {
-  ComponentMap map;
-  std::vector<Finding> findings;
-
-  std::size_t defects() const { return map.validity.defects(); }
-};
-
 class Mapping {
  public:
   // system: of the task's cones.

@@ -25,11 +25,11 @@ SIDES = "the sides of a closed border, each once"
 
 # file: [(head, what bounds the rounds, where the caller is let in)]
 REVIEWED = {
-    "api/assembly.cpp": [("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)],
-    "api/cut_paths.cpp": [
+    "assembly/assembly.cpp": [("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)],
+    "assembly/cut_paths.cpp": [
         ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
     ],
-    "api/kept_components.cpp": [
+    "kept/kept_components.cpp": [
         (
             "for (const KeptComponents* kept = earlier_.get(); kept != nullptr; kept = kept->earlier_.get())",
             LINKED,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/cut_paths.hpp"
+#include "assembly/cut_paths.hpp"
 
 #include <algorithm>
 #include <utility>

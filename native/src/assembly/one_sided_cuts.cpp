@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/one_sided_cuts.hpp"
+#include "assembly/one_sided_cuts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "api/added_cuts.hpp"
-#include "api/feature_report.hpp"
-#include "api/kept_components.hpp"
-#include "api/one_sided_cuts.hpp"
-#include "api/report_defects.hpp"
+#include "assembly/added_cuts.hpp"
+#include "assembly/feature_report.hpp"
+#include "assembly/one_sided_cuts.hpp"
+#include "assembly/report_defects.hpp"
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
@@ -25,8 +24,8 @@ class Assembly {
 
   // task: must outlive this object.  split: whether the map is split already; where it is not, it is kept there once it
   // is.  A component whose map cannot be split is left out, with the findings about its map.
-  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
-           std::optional<KeptMap>& split);
+  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, FoundMap mapped,
+           std::optional<FoundMap>& split);
 
   // Reports components that were left out; if there are no others, rethrows the first error.
   void require_any();

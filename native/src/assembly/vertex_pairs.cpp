@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/vertex_pairs.hpp"
+#include "assembly/vertex_pairs.hpp"
 
 namespace lsgp {
 

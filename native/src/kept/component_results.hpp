@@ -18,14 +18,8 @@
 
 namespace lsgp {
 
-// A component's map before it is put onto a lattice, or after it was split where it overlapped itself.
-struct KeptMap {
-  ComponentMap map;
-  std::vector<Finding> found;  // about it
-};
-
 struct MapResult {
-  std::optional<KeptMap> map;                 // none yet
+  std::optional<FoundMap> map;                // before it is put onto a lattice, or after overlaps are split; none yet
   std::optional<FeatureAlignment> alignment;  // of a seamless layout
 };
 

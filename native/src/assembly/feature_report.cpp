@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/feature_report.hpp"
+#include "assembly/feature_report.hpp"
 
 #include <algorithm>
 
-#include "api/vertex_pairs.hpp"
+#include "assembly/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
 #include "plane/predicates.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "api/component_results.hpp"
 #include "base/array.hpp"
+#include "kept/component_results.hpp"
 #include "lsgp/options.hpp"
 #include "mesh/mirror.hpp"
 #include "pipeline/components.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/doubled_triangles.hpp"
+#include "assembly/doubled_triangles.hpp"
 
 #include <algorithm>
 #include <vector>

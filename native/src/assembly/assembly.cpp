@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/assembly.hpp"
+#include "assembly/assembly.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "api/cut_paths.hpp"
-#include "api/divided_seams.hpp"
-#include "api/doubled_triangles.hpp"
-#include "api/report_defects.hpp"
-#include "api/vertex_pairs.hpp"
+#include "assembly/cut_paths.hpp"
+#include "assembly/divided_seams.hpp"
+#include "assembly/doubled_triangles.hpp"
+#include "assembly/report_defects.hpp"
+#include "assembly/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
 #include "pipeline/straightening.hpp"
@@ -71,8 +71,8 @@ Assembly::Assembly(const Surface& surface, const PerComponent<Component>& compon
   }
 }
 
-void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
-                   std::optional<KeptMap>& split) {
+void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, FoundMap mapped,
+                   std::optional<FoundMap>& split) {
   const Component& component = components_[component_index];
   ComponentMap& map = mapped.map;
   const PerHalfedge<char> open = open_seams(component.mesh);
@@ -104,7 +104,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
         {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
-  move_findings(component, mapped.found, result_.warnings);
+  move_findings(component, mapped.findings, result_.warnings);
   added_cuts_.add(component, map);
   one_sided_cuts_.add(component, geometry, task.cones.mirroring, map);
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

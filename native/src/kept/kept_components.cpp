@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/kept_components.hpp"
+#include "kept/kept_components.hpp"
 
 #include <algorithm>
 #include <utility>

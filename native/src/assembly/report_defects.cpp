@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/report_defects.hpp"
+#include "assembly/report_defects.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/added_cuts.hpp"
+#include "assembly/added_cuts.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/divided_seams.hpp"
+#include "assembly/divided_seams.hpp"
 
 #include <algorithm>
 #include <map>

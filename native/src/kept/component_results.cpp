@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/component_results.hpp"
+#include "kept/component_results.hpp"
 
 #include <algorithm>
 #include <utility>
