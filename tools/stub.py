@@ -23,7 +23,7 @@ HEAD = '''# SPDX-License-Identifier: GPL-3.0-or-later
 Written by tools/stub.py. What the tuples hold is said beside them in native/bindings/module.cpp.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -43,6 +43,7 @@ SPELLINGS = (
         r'typing\.Annotated\[collections\.abc\.Sequence\[(\w+)\], "FixedSize\((\d+)\)"\]',
         lambda found: f"tuple[{', '.join([found[1]] * int(found[2]))}]",
     ),
+    (r"numpy\.ndarray", "NDArray[Any]"),
     (r"collections\.abc\.", ""),
     (r"lsgp\._lsgp\.", ""),
     (r"\bdict\b(?!\[)", "dict[str, Any]"),

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -243,8 +244,9 @@ void append_integer(std::string& out, std::int64_t value) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
-// The shortest text that reads back as the same number, laid out as repr() of Python does.
-void append_number(std::string& out, double value) {
+// The shortest text that reads back as the same number of this precision, laid out as repr() of Python does.
+template <typename Real>
+void append_number(std::string& out, Real value) {
 #ifdef __cpp_lib_to_chars
   if (std::isfinite(value)) {
     // [-]d[.ddd]e+dd
@@ -275,8 +277,10 @@ void append_number(std::string& out, double value) {
     return;
   }
 #endif
+  // Without std::to_chars, as many digits as are always enough for single precision.
+  const bool is_double = sizeof(Real) == sizeof(double);
   const std::unique_ptr<char, decltype(&PyMem_Free)> text(
-      PyOS_double_to_string(value, 'r', 0, Py_DTSF_ADD_DOT_0, nullptr), &PyMem_Free);
+      PyOS_double_to_string(value, is_double ? 'r' : 'g', is_double ? 0 : 9, Py_DTSF_ADD_DOT_0, nullptr), &PyMem_Free);
   if (!text) throw py::error_already_set();
   out += text.get();
 }
@@ -294,6 +298,41 @@ py::bytes format_rows(const py::bytes& keyword, const Numbers& rows, const py::b
       append_number(out, numbers(i, k));
     }
     out += view_of(ending);
+  }
+  return out;
+}
+
+// Appends an element of a column.
+using AppendCell = std::function<void(std::string& out, py::ssize_t row)>;
+
+AppendCell cells_of(const py::array& column) {
+  const auto of = [&](auto type, const auto& append) -> AppendCell {
+    const auto values = py::array_t<decltype(type), py::array::forcecast>::ensure(column);
+    if (!values) throw py::error_already_set();
+    return [values, append, row = values.template unchecked<1>()](std::string& out, py::ssize_t i) {
+      append(out, row(i));
+    };
+  };
+  const auto number = [](std::string& out, auto value) { append_number(out, value); };
+  if (column.dtype().kind() != 'f') return of(std::int64_t{}, append_integer);
+  return column.itemsize() == sizeof(float) ? of(float{}, number) : of(double{}, number);
+}
+
+// A line for each row of a table: numbers in the precision of their column, with spaces between them.  columns: at
+// least one, (n) each.
+py::bytes format_table(const std::vector<py::array>& columns) {
+  constexpr std::size_t usual_width = 12;
+  std::vector<AppendCell> cells;
+  for (const py::array& column : columns) cells.push_back(cells_of(column));
+  const py::ssize_t count = columns.front().size();
+  std::string out;
+  out.reserve(usual_width * columns.size() * static_cast<std::size_t>(count));
+  for (py::ssize_t i = 0; i < count; ++i) {
+    for (const AppendCell& append : cells) {
+      append(out, i);
+      out += ' ';
+    }
+    out.back() = '\n';
   }
   return out;
 }
@@ -470,6 +509,7 @@ void define_mesh_text(py::module_& module) {
   module.def("slash_parts", &slash_parts, "data"_a, "begins"_a, "ends"_a, "picks"_a, "part"_a);
   module.def("distinct_tokens", &distinct_tokens, "data"_a, "begins"_a, "ends"_a, "picks"_a);
   module.def("format_rows", &format_rows, "keyword"_a, "rows"_a, "ending"_a);
+  module.def("format_table", &format_table, "columns"_a);
   module.def("format_faces", &format_faces, "sizes"_a, "mapped"_a, "vertices"_a, "coordinates"_a);
   module.def("plain_lines", &plain_lines, "data"_a, "at"_a, "most"_a);
   module.def("replace_references", &replace_references, "lines"_a, "numbers"_a);

@@ -79,6 +79,30 @@ def read_ply(data: bytes) -> PolygonMesh:
     return PolygonMesh(positions, corners.astype(np.int32), sizes, extras=_extras(elements))
 
 
+@dataclass(frozen=True, slots=True)
+class TextTables:
+    """header: of the file, to the end of its last line. tables: a structured array of each element."""
+
+    header: bytes
+    tables: list[NDArray]
+
+
+def read_text_tables(data: bytes) -> TextTables | None:
+    """All rows of a text file that `read_ply` accepts; None of a binary one, and where a list is not as long in all
+    rows or an integer is none of its type."""
+    elements, byte_order, begin, line = _read_header(data)
+    if byte_order:
+        return None
+    text = _TextTable(data[begin:], line)
+    tables = []
+    for element in elements:
+        table = text.read_table(element)
+        if table is None:
+            return None
+        tables.append(table)
+    return TextTables(data[:begin], tables)
+
+
 def _extras(elements: list[Element]) -> tuple[str, ...]:
     """The content of the file other than its mesh."""
     extras = []
@@ -148,6 +172,26 @@ class _TextTable:
         rows = self._take(element)
         begins, counts = self._cells(element, rows, [wanted])[wanted]
         return rows.integers(ranges(begins, counts)), counts
+
+    def read_table(self, element: Element) -> NDArray | None:
+        """A structured array of all properties, lists as fields of several numbers."""
+        rows = self._take(element)
+        columns = {}
+        for place, (begins, counts) in self._cells(element, rows, [*range(len(element.properties))]).items():
+            p = element.properties[place]
+            if (counts != counts[:1]).any():
+                return None
+            found = rows.floats(ranges(begins, counts))
+            with np.errstate(invalid="ignore", over="ignore"):
+                typed = found.astype(p.type)
+            if typed.dtype.kind != "f" and (typed != found).any():
+                return None
+            width = int(counts[0]) if len(counts) else 0
+            columns[p.name.decode()] = typed if p.count_type is None else typed.reshape(len(counts), width)
+        table = np.empty(len(rows.lines), [(name, c.dtype, c.shape[1:]) for name, c in columns.items()])
+        for name, column in columns.items():
+            table[name] = column
+        return table
 
     def skip(self, element: Element) -> None:
         if element.properties:

@@ -107,3 +107,22 @@ def test_edges_of_polygons_are_those_of_a_set():
     pairs = {tuple(sorted(pair)) for p in polygons for pair in zip(p.tolist(), np.roll(p, -1).tolist(), strict=True)}
     mesh = PolygonMesh(generator.random((60, 3)), corners, sizes)
     assert triangulate(mesh).edges.tolist() == [list(pair) for pair in sorted(pairs)]
+
+
+def test_a_table_has_the_shortest_digits_of_each_column():
+    numbers = numbers_of_all_sizes(5_000)
+    with np.errstate(over="ignore"):
+        single = np.asarray(numbers, np.float32)
+    integers = np.arange(len(numbers)) * 2_147_483_647 - 5
+    text = _lsgp.format_table([numbers, integers, single, single[::-1]])
+    rows = [line.split() for line in text.decode().splitlines()]
+    assert [row[0] for row in rows] == [repr(value) for value in numbers.tolist()]
+    assert [int(row[1]) for row in rows] == integers.tolist()
+    finite = np.isfinite(single)
+    written = [row[2] for row in rows]
+    assert (np.array(written, np.float32)[finite] == single[finite]).all()
+    assert [row[3] for row in rows] == written[::-1]
+    fewest = [np.format_float_scientific(value, unique=True, trim="-") for value in single[finite]]
+    count = [len(digits.split("e")[0].replace("-", "").replace(".", "")) for digits in fewest]
+    mantissas = [text.split("e")[0].replace("-", "").replace(".", "").strip("0") for text in np.array(written)[finite]]
+    assert all(len(mantissa) <= most for mantissa, most in zip(mantissas, count, strict=True))

@@ -25,7 +25,9 @@ SIDES = "the sides of a closed border, each once"
 
 # file: [(head, what bounds the rounds, where the caller is let in)]
 REVIEWED = {
-    "assembly/assembly.cpp": [("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)],
+    "assembly/assembly.cpp": [
+        ("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)
+    ],
     "assembly/cut_paths.cpp": [
         ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
     ],
