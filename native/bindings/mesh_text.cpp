@@ -464,41 +464,6 @@ py::bytes replace_references(const py::bytes& lines, const Places& numbers) {
   return out;
 }
 
-// The edges of polygons, each once, the smaller vertex first, in order, (e, 2).  corners: (c) vertices below
-// vertex_count, polygon after polygon.  sizes: (f) corners of each.
-Vertices polygon_edges(const Vertices& corners, const Places& sizes, std::int32_t vertex_count) {
-  const auto vertex = corners.unchecked<1>();
-  const auto size = sizes.unchecked<1>();
-  const auto for_each_edge = [&](auto visit) {
-    py::ssize_t begin = 0;
-    for (py::ssize_t f = 0; f < size.shape(0); begin += size(f++)) {
-      std::int32_t before = size(f) > 0 ? vertex(begin + size(f) - 1) : 0;
-      for (py::ssize_t corner = begin; corner < begin + size(f); ++corner) {
-        visit(std::min(before, vertex(corner)), std::max(before, vertex(corner)));
-        before = vertex(corner);
-      }
-    }
-  };
-  // Counted into a bucket for each lower vertex; those have few edges each.
-  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for_each_edge([&](std::int32_t low, std::int32_t) { ++ends[static_cast<std::size_t>(low) + 1]; });
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<std::int32_t> higher(ends.back());
-  for_each_edge([&](std::int32_t low, std::int32_t high) { higher[ends[static_cast<std::size_t>(low)]++] = high; });
-  std::vector<std::int32_t> edges;
-  edges.reserve(higher.size());
-  std::size_t begin = 0;
-  for (std::int32_t low = 0; low < vertex_count; ++low) {
-    const std::size_t end = ends[static_cast<std::size_t>(low)];
-    const auto first = higher.begin() + static_cast<std::ptrdiff_t>(begin),
-               last = higher.begin() + static_cast<std::ptrdiff_t>(end);
-    std::sort(first, last);
-    std::for_each(first, std::unique(first, last), [&](std::int32_t high) { edges.insert(edges.end(), {low, high}); });
-    begin = end;
-  }
-  return Vertices({static_cast<py::ssize_t>(edges.size() / 2), py::ssize_t{2}}, edges.data());
-}
-
 }  // namespace
 
 void define_mesh_text(py::module_& module) {
@@ -513,5 +478,4 @@ void define_mesh_text(py::module_& module) {
   module.def("format_faces", &format_faces, "sizes"_a, "mapped"_a, "vertices"_a, "coordinates"_a);
   module.def("plain_lines", &plain_lines, "data"_a, "at"_a, "most"_a);
   module.def("replace_references", &replace_references, "lines"_a, "numbers"_a);
-  module.def("polygon_edges", &polygon_edges, "corners"_a, "sizes"_a, "vertex_count"_a);
 }

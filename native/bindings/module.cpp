@@ -13,6 +13,7 @@
 #include "island_fit.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh_text.hpp"
+#include "polygons.hpp"
 
 namespace py = pybind11;
 
@@ -657,6 +658,7 @@ PYBIND11_MODULE(_lsgp, module) {
   });
   using py::literals::operator""_a;
   define_mesh_text(module);
+  define_polygons(module);
   define_island_fit(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")

@@ -28,9 +28,9 @@ from ..base.short_repr import ShortRepr
 from ..errors import Elements, InputError
 from .mesh_text import ranges
 
-# In the frame where a polygon has the size of 1.
-NEARLY_FLAT_TRIANGLE = 1e-9
-NEARLY_EQUAL_LENGTH = 1e-9
+# The corners of the triangles of a quad.
+ON_FIRST_DIAGONAL = np.array([[0, 1, 2], [0, 2, 3]])
+ON_SECOND_DIAGONAL = np.array([[0, 1, 3], [1, 2, 3]])
 
 # Corners of a polygon from which on it is cut by itself: many at once test every ear against all corners.
 LARGE = 1024
@@ -160,7 +160,8 @@ def triangulate(mesh: PolygonMesh) -> Triangulation:
             if size == 3:
                 local = np.broadcast_to(np.arange(3), (len(rows), 1, 3))
             elif size == 4:
-                local = _split_quads(mesh.positions[mesh.corners[rows]], mesh.corners[rows])
+                on_first = _lsgp.quad_diagonals(mesh.positions, mesh.corners[rows])
+                local = np.where(on_first[:, None, None], ON_FIRST_DIAGONAL, ON_SECOND_DIAGONAL)
             else:
                 local = _clip_ears(_in_plane(mesh.positions[mesh.corners[rows]]))
             target = firsts[polygons][:, None] + np.arange(size - 2)
@@ -185,21 +186,18 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
     if (mesh.sizes == 3).all():
         return
     n = len(mesh.positions)
+    redo = _lsgp.doubled_diagonals(corner, mesh.corners, mesh.sizes, edges, n)
+    if not len(redo):
+        return
     counts = mesh.sizes - 2
     firsts = np.cumsum(counts) - counts
-    # A diagonal is a side of two triangles, which run along it in opposite directions.
     following = np.roll(corner, -1, axis=1)
     step = following - corner
     diagonal = (step > 1) & (step < np.repeat(mesh.sizes, counts)[:, None] - 1)
     keys = edge_keys(mesh.corners[corner[diagonal]], mesh.corners[following[diagonal]], n)
     of_edges = edge_keys(edges[:, 0], edges[:, 1], n)
-    ordered = np.sort(np.concatenate([of_edges, keys]))
-    doubled = np.isin(keys, ordered[1:][ordered[1:] == ordered[:-1]])
-    if not doubled.any():
-        return
     polygon = np.repeat(np.arange(len(mesh.sizes)), counts)
     owner = np.broadcast_to(polygon[:, None], corner.shape)[diagonal]
-    redo = np.unique(owner[doubled])
     # Only edges and diagonals between vertices of these polygons can be in their way.
     near = np.zeros(n, bool)
     near[mesh.corners[ranges(mesh.starts[redo], mesh.sizes[redo])]] = True
@@ -253,32 +251,6 @@ def _unit_size(points: NDArray[np.float64]) -> NDArray[np.float64]:
     points = points - points[:, :1]
     extent = np.abs(points).max(axis=(1, 2), keepdims=True)
     return points / np.where(extent > 0, extent, 1.0)
-
-
-def _split_quads(points: NDArray[np.float64], vertices: NDArray[np.int32]) -> NDArray[np.int64]:
-    """Two triangles each, (k, 2, 3) local corners, for quads (k, 4, 3) with vertices (k, 4)."""
-    a, b, c, d = np.moveaxis(_unit_size(points), 1, 0)
-    normal = np.cross(c - a, d - b)  # twice Newell's area vector
-    square = np.maximum(_dot(normal, normal), np.finfo(float).tiny)
-    # The two triangles on a diagonal have shares of this normal that add up to 1; a turned one has a negative share.
-    share_ac = _dot(np.cross(b - a, c - a), normal) / square
-    share_bd = _dot(np.cross(b - a, d - a), normal) / square
-    worst_ac = np.minimum(share_ac, 1 - share_ac)
-    worst_bd = np.minimum(share_bd, 1 - share_bd)
-    good_ac = worst_ac > NEARLY_FLAT_TRIANGLE
-    good_bd = worst_bd > NEARLY_FLAT_TRIANGLE
-    length_ac = _dot(c - a, c - a)
-    length_bd = _dot(d - b, d - b)
-    tie = np.abs(length_ac - length_bd) <= NEARLY_EQUAL_LENGTH * (length_ac + length_bd)
-    lower_ac = vertices[:, 0::2].min(axis=1) < vertices[:, 1::2].min(axis=1)
-    take_ac = np.where(
-        good_ac & good_bd,
-        np.where(tie, lower_ac, length_ac < length_bd),
-        np.where(good_ac == good_bd, worst_ac >= worst_bd, good_ac),
-    )
-    on_ac = np.array([[0, 1, 2], [0, 2, 3]])
-    on_bd = np.array([[0, 1, 3], [1, 2, 3]])
-    return np.where(take_ac[:, None, None], on_ac, on_bd)
 
 
 def _in_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:

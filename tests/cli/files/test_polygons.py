@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lsgp import _lsgp
 from lsgp.errors import InputError
 from lsgp.io.polygons import require_polygons, triangulate
 from polygon_meshes import cube, patch, polygon_areas, polygon_mesh, require_triangulation, triangle_areas
@@ -237,6 +238,29 @@ def test_diagonals_join_only_two_triangles(faces: list[list[int]]) -> None:
 )
 def test_degenerate_polygons_still_become_triangles(points, size: int) -> None:
     one_polygon(points(size))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_polygons_with_doubled_diagonals_are_those_of_a_count(seed: int) -> None:
+    """Faces of few vertices, cut into fans: by a count of all pairs that edges and diagonals join."""
+    random = np.random.default_rng(seed)
+    sizes = random.integers(3, 8, 12)
+    corners = np.concatenate([random.permutation(14)[:size] for size in sizes]).astype(np.int32)
+    starts = np.cumsum(sizes) - sizes
+    fans = [
+        [start, start + i, start + i + 1] for start, size in zip(starts, sizes, strict=True) for i in range(1, size - 1)
+    ]
+    edges, diagonals = set(), []
+    for polygon, (start, size) in enumerate(zip(starts.tolist(), sizes.tolist(), strict=True)):
+        ring = corners[start : start + size].tolist()
+        edges |= {frozenset(pair) for pair in zip(ring, ring[1:] + ring[:1], strict=True)}
+        diagonals += [(frozenset((ring[0], vertex)), polygon) for vertex in ring[2:-1]]
+    joined = [*edges, *(pair for pair, _ in diagonals)]
+    expected = sorted({polygon for pair, polygon in diagonals if joined.count(pair) > 1})
+    drawn = np.array([random.permutation(sorted(pair)) for pair in edges], np.int32)
+    found = _lsgp.doubled_diagonals(np.array(fans), corners, sizes, drawn, 14)
+    assert found.tolist() == expected
+    assert 0 < len(expected) < len(sizes)
 
 
 def test_values_of_triangle_corners_return_to_polygon_corners() -> None:

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "polygons.hpp"
+
+#include <pybind11/numpy.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace {
+
+using Places = py::array_t<std::int64_t, py::array::c_style>;
+using Vertices = py::array_t<std::int32_t, py::array::c_style>;
+using Numbers = py::array_t<double, py::array::c_style>;
+using Marks = py::array_t<bool, py::array::c_style>;
+
+// The edges of polygons, each once, the smaller vertex first, in order, (e, 2).  corners: (c) vertices below
+// vertex_count, polygon after polygon.  sizes: (f) corners of each.
+Vertices polygon_edges(const Vertices& corners, const Places& sizes, std::int32_t vertex_count) {
+  const auto vertex = corners.unchecked<1>();
+  const auto size = sizes.unchecked<1>();
+  const auto for_each_edge = [&](auto visit) {
+    py::ssize_t begin = 0;
+    for (py::ssize_t f = 0; f < size.shape(0); begin += size(f++)) {
+      std::int32_t before = size(f) > 0 ? vertex(begin + size(f) - 1) : 0;
+      for (py::ssize_t corner = begin; corner < begin + size(f); ++corner) {
+        visit(std::min(before, vertex(corner)), std::max(before, vertex(corner)));
+        before = vertex(corner);
+      }
+    }
+  };
+  // Counted into a bucket for each lower vertex; those have few edges each.
+  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for_each_edge([&](std::int32_t low, std::int32_t) { ++ends[static_cast<std::size_t>(low) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::int32_t> higher(ends.back());
+  for_each_edge([&](std::int32_t low, std::int32_t high) { higher[ends[static_cast<std::size_t>(low)]++] = high; });
+  std::vector<std::int32_t> edges;
+  edges.reserve(higher.size());
+  std::size_t begin = 0;
+  for (std::int32_t low = 0; low < vertex_count; ++low) {
+    const std::size_t end = ends[static_cast<std::size_t>(low)];
+    const auto first = higher.begin() + static_cast<std::ptrdiff_t>(begin),
+               last = higher.begin() + static_cast<std::ptrdiff_t>(end);
+    std::sort(first, last);
+    std::for_each(first, std::unique(first, last), [&](std::int32_t high) { edges.insert(edges.end(), {low, high}); });
+    begin = end;
+  }
+  return Vertices({static_cast<py::ssize_t>(edges.size() / 2), py::ssize_t{2}}, edges.data());
+}
+
+// Whether to cut a quad from its first corner to its third, rather than from its second to its fourth.  points: of the
+// corners.  is_first_lower: whether the least vertex is on that diagonal, which decides where both are as good.
+bool is_cut_from_first(const Eigen::Matrix<double, 3, 4>& points, bool is_first_lower) {
+  constexpr double nearly_flat = 1e-9, nearly_equal = 1e-9;
+  // At the origin and of size 1, so that no product of coordinates over- or underflows.
+  Eigen::Matrix<double, 3, 4> at = points.colwise() - points.col(0);
+  const double extent = at.cwiseAbs().maxCoeff();
+  if (extent > 0) at /= extent;
+  const Eigen::Vector3d b = at.col(1), c = at.col(2), d = at.col(3), across = d - b;
+  const Eigen::Vector3d normal = c.cross(across);  // twice Newell's area vector
+  const double square = std::max(normal.squaredNorm(), std::numeric_limits<double>::min());
+  // The two triangles on a diagonal have shares of this normal that add up to 1; a turned one has a negative share.
+  const auto worst_of = [&](const Eigen::Vector3d& area) {
+    const double share = area.dot(normal) / square;
+    return std::min(share, 1 - share);
+  };
+  const double first = worst_of(b.cross(c)), second = worst_of(b.cross(d));
+  const bool first_is_good = first > nearly_flat, second_is_good = second > nearly_flat;
+  if (first_is_good != second_is_good) return first_is_good;
+  if (!first_is_good) return first >= second;
+  const double length = c.squaredNorm(), other = across.squaredNorm();
+  return std::abs(length - other) <= nearly_equal * (length + other) ? is_first_lower : length < other;
+}
+
+// The same of each quad.  positions: (n, 3).  quads: (k, 4) vertices.
+Marks quad_diagonals(const Numbers& positions, const Vertices& quads) {
+  const auto place = positions.unchecked<2>();
+  const auto vertex = quads.unchecked<2>();
+  Marks found(vertex.shape(0));
+  auto out = found.mutable_unchecked<1>();
+  for (py::ssize_t q = 0; q < vertex.shape(0); ++q) {
+    Eigen::Matrix<double, 3, 4> points;
+    for (int c = 0; c < 4; ++c) {
+      for (int axis = 0; axis < 3; ++axis) points(axis, c) = place(vertex(q, c), axis);
+    }
+    out(q) = is_cut_from_first(points, std::min(vertex(q, 0), vertex(q, 2)) < std::min(vertex(q, 1), vertex(q, 3)));
+  }
+  return found;
+}
+
+// The polygons with a diagonal between vertices that an edge or another diagonal joins as well, ascending.
+// triangles: (m, 3) polygon corners, of every polygon two fewer than it has corners.  corners, sizes: as above.
+// edges: (e, 2), each once.
+Places doubled_diagonals(const Places& triangles, const Vertices& corners, const Places& sizes, const Vertices& edges,
+                         std::int32_t vertex_count) {
+  constexpr std::int64_t edge = -1;
+  struct Joint {
+    std::int32_t higher;
+    std::int64_t owner;  // of a diagonal
+    bool operator<(const Joint& other) const { return higher < other.higher; }
+  };
+  const auto corner = triangles.unchecked<2>();
+  const auto vertex = corners.unchecked<1>();
+  const auto size = sizes.unchecked<1>();
+  const auto joined = edges.unchecked<2>();
+  const auto for_each_joint = [&](const auto& visit) {
+    for (py::ssize_t e = 0; e < joined.shape(0); ++e) {
+      const auto [lower, higher] = std::minmax(joined(e, 0), joined(e, 1));
+      visit(lower, Joint{higher, edge});
+    }
+    py::ssize_t f = 0;
+    for (py::ssize_t polygon = 0; polygon < size.shape(0); ++polygon) {
+      for (const py::ssize_t end = f + size(polygon) - 2; f < end; ++f) {
+        for (int c = 0; c < 3; ++c) {
+          // A diagonal is a side of two triangles, which run along it in opposite directions.
+          const std::int64_t from = corner(f, c), to = corner(f, (c + 1) % 3);
+          if (to - from < 2 || to - from > size(polygon) - 2) continue;
+          const auto [lower, higher] = std::minmax(vertex(from), vertex(to));
+          visit(lower, Joint{higher, polygon});
+        }
+      }
+    }
+  };
+  // Counted into a bucket for each lower vertex; those have few each.
+  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for_each_joint([&](std::int32_t lower, const Joint&) { ++ends[static_cast<std::size_t>(lower) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Joint> joints(ends.back());
+  for_each_joint(
+      [&](std::int32_t lower, const Joint& joint) { joints[ends[static_cast<std::size_t>(lower)]++] = joint; });
+  std::vector<std::int64_t> found;
+  std::size_t begin = 0;
+  for (std::int32_t lower = 0; lower < vertex_count; ++lower) {
+    const std::size_t end = ends[static_cast<std::size_t>(lower)];
+    std::sort(joints.begin() + static_cast<std::ptrdiff_t>(begin), joints.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto is_alike = [&](std::size_t other) { return joints[other].higher == joints[i].higher; };
+      const bool is_doubled = (i > begin && is_alike(i - 1)) || (i + 1 < end && is_alike(i + 1));
+      if (is_doubled && joints[i].owner != edge) found.push_back(joints[i].owner);
+    }
+    begin = end;
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return Places(static_cast<py::ssize_t>(found.size()), found.data());
+}
+
+}  // namespace
+
+void define_polygons(py::module_& module) {
+  using py::literals::operator""_a;
+  module.def("polygon_edges", &polygon_edges, "corners"_a, "sizes"_a, "vertex_count"_a);
+  module.def("quad_diagonals", &quad_diagonals, "positions"_a, "quads"_a);
+  module.def("doubled_diagonals", &doubled_diagonals, "triangles"_a, "corners"_a, "sizes"_a, "edges"_a,
+             "vertex_count"_a);
+}
