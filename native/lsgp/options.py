@@ -103,9 +103,9 @@ class Options:
     stretch: with "low-stretch", from 0, the conformal map, to 1, the map of least stretch.
     straighten: with "low-stretch" and free boundaries: boundaries and cuts that are nearly straight in the map become
         exactly straight, and those nearly at right angles are aligned with u and v, unless that costs noticeable
-        stretch. In seamless layouts on squares instead, in either mode: creases of hard surfaces, of 0.7 radians or
-        more, run along lines of the lattice, as many as cost at most a tenth of L2 stretch; FEATURES_OFF_LATTICE names
-        the others.
+        stretch. In seamless layouts on squares, in either mode, this holds for components without cuts; and creases of
+        hard surfaces, of 0.7 radians or more, run along lines of the lattice, as many as cost at most a tenth of L2
+        stretch; FEATURES_OFF_LATTICE names the others.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them until none does: first along other cuts for the
         same cones, unless seams are marked, then along further cuts. Transitions stay exact.

@@ -110,7 +110,8 @@ struct Options {
   Mode mode = Mode::conformal;
   double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, the map of least stretch
   // With low_stretch: boundaries and cuts that are nearly straight become exactly straight and axis-aligned, unless
-  // that costs noticeable stretch. In seamless layouts on squares: creases of hard surfaces run along the lattice.
+  // that costs noticeable stretch. In seamless layouts on squares, in any mode: those of components without cuts, and
+  // creases of hard surfaces run along the lattice.
   bool straighten = false;
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "pipeline/component_repair.hpp"
 #include "pipeline/component_unfold.hpp"
+#include "pipeline/straightening.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "repair/flat_metric.hpp"
@@ -109,6 +110,8 @@ class Mapping {
   // Straightens the nearly straight sides of the boundary of a valid map of low stretch and aligns them with the axes;
   // leaves the map unchanged if that costs noticeable stretch.
   void straighten(ComponentMap& map);
+  // The creases inside as well: on the lattice, islands stay as they are.
+  void straighten_for_lattice(ComponentMap& map);
   // The map of low stretch whose boundaries turn by multiples of a quarter turn, if they nearly do; none if they
   // already do or if they are far from it.
   std::optional<ComponentMap> with_quarter_turns(const ComponentMap& map);
@@ -146,7 +149,7 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
     const bool is_relaxed = options_.mode == Mode::low_stretch && options_.stretch > 0;
     if (is_relaxed) repair_on(system_, task_).relax(found.map);
     if (is_relaxed || options_.seamless) straighten(found.map);
-    if (options_.seamless) found.map.natural_l2 = 0;  // on the lattice, islands stay as they are
+    if (options_.seamless) straighten_for_lattice(found.map);
   }
   found.map.repair = report_.value_or(RepairReport{});
   findings.insert(findings.end(), found.findings.begin(), found.findings.end());
@@ -405,6 +408,13 @@ void Mapping::straighten(ComponentMap& map) {
   }
   if (!found) found = repair.straightened(map);
   if (found) map = std::move(*found);
+}
+
+void Mapping::straighten_for_lattice(ComponentMap& map) {
+  ComponentRepair repair = repair_on(system_, task_);
+  straighten_islands(system_.surface(), SideKinds::with_creases, {options_.stretch, task_.importance}, repair.counter(),
+                     map);
+  map.natural_l2 = 0;
 }
 
 std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map) {

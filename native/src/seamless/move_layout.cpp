@@ -124,6 +124,7 @@ void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& impor
     layout.energy = measure_energy(layout.position);
     return;
   }
+  if (cut_graph_.cuts.empty()) return;  // no translation was rounded, and its sides may have been made straight
   const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
   NewtonMinimizer newton(
       surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},

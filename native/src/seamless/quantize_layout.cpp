@@ -47,6 +47,31 @@ double rank_of_root(double curvature) {
   return gap < 1e-6 ? 0 : 1 / (1 + gap);
 }
 
+struct Side {
+  double angle, length;
+};
+
+double length_of(const Array<Side>& sides) {
+  return std::accumulate(sides.begin(), sides.end(), 0.0,
+                         [](double sum, const Side& side) { return sum + side.length; });
+}
+
+// Of sides, sorted by angle, those of the greatest length together whose angles differ by no more than this.
+Array<Side> most_parallel(const Array<Side>& sides, double tolerance) {
+  double most = 0, length = 0;
+  auto end = sides.begin(), best = end, end_of_best = end;
+  for (auto first = sides.begin(); first != sides.end(); ++first) {
+    for (; end != sides.end() && end->angle <= first->angle + tolerance; ++end) length += end->length;
+    if (length > most) {
+      most = length;
+      best = first;
+      end_of_best = end;
+    }
+    length -= first->length;
+  }
+  return {best, end_of_best};
+}
+
 bool is_below_root(const NodeGraph& nodes, Index vertex) {
   return vertex != none && nodes.vertex[nodes.order.front()] != vertex;
 }
@@ -118,36 +143,24 @@ void LayoutQuantizer::prepare_search() {
 
 // Of a layout without cuts, so that most of its straight sides run along the lattice; none if few are parallel.
 std::optional<Complex> LayoutQuantizer::turn_along_sides(const Eigen::VectorXcd& position) const {
-  constexpr double same_direction = 1e-4;  // radians
-  constexpr double least_share = 0.25;     // of the boundaries' length
+  constexpr double parallel = 1e-4, exactly_parallel = 1e-9;  // radians
+  constexpr double least_share = 0.25;                        // of the boundaries' length
   const double turn = 2 * M_PI / lattice_.rotation_order();
-  Array<std::pair<double, double>> sides;  // angle and length
-  double all = 0;
+  Array<Side> sides;
   for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
     if (mesh_.twin[h] != none) continue;
     const Complex side = position[cut_mesh_.copy_of_corner[next(h)]] - position[cut_mesh_.copy_of_corner[h]];
     const double angle = std::remainder(std::arg(side), turn);
-    sides.emplace_back(angle < -turn / 2 + same_direction ? angle + turn : angle, std::abs(side));
-    all += std::abs(side);
+    sides.push_back({angle < -turn / 2 + parallel ? angle + turn : angle, std::abs(side)});
   }
-  std::sort(sides.begin(), sides.end());
-  double most = least_share * all, length = 0;
-  std::optional<Complex> best;
-  std::size_t end = 0;
-  for (std::size_t first = 0; first < sides.size(); ++first) {
-    for (; end < sides.size() && sides[end].first <= sides[first].first + same_direction; ++end) {
-      length += sides[end].second;
-    }
-    if (length > most) {
-      most = length;
-      const auto longest = std::max_element(sides.begin() + static_cast<std::ptrdiff_t>(first),
-                                            sides.begin() + static_cast<std::ptrdiff_t>(end),
-                                            [](const auto& a, const auto& b) { return a.second < b.second; });
-      best = std::polar(1.0, -longest->first);
-    }
-    length -= sides[first].second;
-  }
-  return best;
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.angle < b.angle; });
+  const double all = length_of(sides);
+  sides = most_parallel(sides, parallel);
+  if (!(length_of(sides) > least_share * all)) return std::nullopt;
+  sides = most_parallel(sides, exactly_parallel);  // those that were made straight
+  const auto longest =
+      std::max_element(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.length < b.length; });
+  return std::polar(1.0, -longest->angle);
 }
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
