@@ -4,13 +4,15 @@
 speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
 seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. threads: two threads
 beside one. rounding: what seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's
-Minimum Stretch and libigl's SLIM.
+Minimum Stretch and libigl's SLIM. files: reading and writing, the command line from file to file beside that of BFF,
+and the preset Bake beside xatlas.
 
-All get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map.
-Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in which the methods
-take turns, so that a busy machine hurts all alike: compare ratios within one run. Needs numpy, scipy and libigl beside
-lsgp; for Blender a Python with bpy, named by BPY_PYTHON or where tools/test puts it; for the Laplacian CMake, a
-compiler and Eigen, and libsuitesparse-dev for CHOLMOD; for --write matplotlib. What is not there is left out.
+But for files, all get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and
+measures the map. Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in
+which the methods take turns, so that a busy machine hurts all alike: compare ratios within one run. Needs numpy, scipy
+and libigl beside lsgp; for Blender a Python with bpy, named by BPY_PYTHON or where tools/test puts it; for the Laplacian
+CMake, a compiler and Eigen, and libsuitesparse-dev for CHOLMOD; xatlas; for --write matplotlib. The environment variable
+BFF names the command line of BFF. What is not there is left out.
 
     python tools/benchmark/benchmark.py [--tables speed ...] [--largest 1000000] [--repetitions 5] [--write] [mesh ...]
 """
@@ -23,14 +25,15 @@ import sys
 from collections.abc import Iterable
 
 from benchmark_cases import MESHES, ROOT, SHARED, dense_cases, growing_cases, small_cases
+from benchmark_files import measure_command, measure_files, measure_xatlas
 from benchmark_goals import goals
 from benchmark_options import measure_low_stretch, measure_rounding, measure_shares, measure_slim, measure_threads
 from benchmark_speed import Measured, measure, plot, ratio_rows, stage_rows, time_rows
 from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
 
 LARGE, MANY = 200_000, 100
-TABLES = ("speed", "threads", "rounding", "shares", "stretch")
-ON_PAGE = ("speed", "threads", "stretch")
+TABLES = ("speed", "threads", "rounding", "shares", "stretch", "files")
+ON_PAGE = ("speed", "threads", "stretch", "files")
 PAGE = ROOT / "docs" / "reference" / "benchmark.md"
 PLOT = ROOT / "docs" / "images" / "benchmark.svg"
 
@@ -90,6 +93,21 @@ Beside libigl's SLIM (Rabinovich et al. 2017) on the same cut, which starts from
 Dirichlet energy is within 2 % of that of lsgp. Its maps do not match across the cuts, which makes their problem easier.
 """
 
+FILES = """\
+## Files
+
+CPU seconds of reading a surface from files of each kind, and of writing it with a map. OFF has no texture coordinates.
+"""
+
+COMMAND = """\
+The command line from file to file: `lsgp unwrap --cones auto:8` of an OBJ, and the peak memory of its process.
+"""
+
+BESIDE_XATLAS = """\
+The preset *Bake*, packed, beside xatlas with its defaults; [the maps are compared
+elsewhere](quality.md#presets-and-other-unwraps).
+"""
+
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -136,6 +154,12 @@ def main() -> None:
         show(f"{BESIDE_BLENDER}\n{beside_blender}")
         growing = [case for case in growing_cases(200_000) if len(case.cones) < MANY]
         show(f"{BESIDE_SLIM}\n{as_table(measure_slim(case) for case in growing)}")
+    if "files" in arguments.tables:
+        growing = [case for case in growing_cases(arguments.largest) if len(case.cones) < MANY]
+        show(f"{FILES}\n{as_table(measure_files(case, min(3, repetitions)) for case in growing)}")
+        show(f"{COMMAND}\n{as_table(measure_command(case, min(3, repetitions)) for case in growing)}")
+        dense = [case for case in growing if len(case.triangles) < LARGE]
+        show(f"{BESIDE_XATLAS}\n{as_table(measure_xatlas(case, 1) for case in dense)}")
     if arguments.write:
         page.append(goals())
         PAGE.write_text("\n\n".join(page) + "\n", encoding="utf-8")
@@ -159,9 +183,9 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
 def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
-Written by `python tools/benchmark/benchmark.py --tables speed threads stretch --write`. All methods take arrays and
-return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of
-repetitions. Compare them with each other, not with those of another machine.
+Written by `python tools/benchmark/benchmark.py --tables speed threads stretch files --write`. All methods take arrays
+and return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians
+of repetitions. Compare them with each other, not with those of another machine.
 
 - **lsgp**: given cones, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
 - **angle edited**, **cone moved**: a repeated call of `lsgp.Solver`, which caches unchanged data.
