@@ -152,7 +152,7 @@ def test_existing_cones_get_angles_as_good_as_placed_ones(mesh: Mesh) -> None:
     placed = place(mesh, count=8)
     again = place(mesh, placed.cones, count=8)
     assert again.cones.tolist() == placed.cones.tolist()
-    assert again.mapped_l2 == pytest.approx(placed.mapped_l2, rel=1e-3)
+    assert again.mapped_l2 == pytest.approx(placed.mapped_l2, rel=2e-3)
 
 
 def test_existing_cones_on_a_border_prescribe_nothing_without_an_angle() -> None:
