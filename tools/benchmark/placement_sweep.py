@@ -168,9 +168,18 @@ def is_off(one: Ending) -> bool:
 
 
 def table(found: list[tuple[str, str, Ending]]) -> str:
-    columns = "valid, named, refused, silent, crash, slow, as predicted, no worse, as reported, at most 1.05".split(
-        ", "
-    )
+    columns = [
+        "valid",
+        "named",
+        "refused",
+        "silent",
+        "crash",
+        "slow",
+        "as predicted",
+        "no worse",
+        "as reported",
+        "at most 1.05",
+    ]
     lines = [f"| run | {' | '.join(columns)} | codes |", f"|---|{'--:|' * len(columns)}---|"]
     for run in dict.fromkeys(one[0] for one in found):
         endings = [ending for of_run, _, ending in found if of_run == run]
