@@ -4,22 +4,23 @@
     PYTHONPATH=tests python tools/benchmark/placement_page.py [--write] [--jobs N] [part ...]
 
 Parts are `meshes`, those of placement_sweep.py with a target and with eight cones; `misses`, a line for each of these
-that is not as predicted or has no map; `flat`, bodies with flat faces; and `plates` with many tunnels. Needs scipy and
-the lsgp wheel, and the shared meshes if they are to be included.
+that is not as predicted or has no map; `flat`, bodies with flat faces; `plates` with many tunnels; and `tips`, bodies
+and animals with limbs. Needs scipy and the lsgp wheel, and the shared meshes if they are to be included.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
 import lsgp
 import meshes
 import numpy as np
+from extremities import body_with_limbs, distances_to_cones, extremities, largest_component, with_cones_at
 from meshes import Mesh
-from placement_quality import of_plates, within
+from placement_quality import SHARED, of_plates, read_surface, within
 from placement_sweep import Ending, all_meshes, is_off, sweep, table
 from zoo import closed
 
@@ -36,6 +37,7 @@ FLAT = {
     "stairs": meshes.voxels(np.tril(np.ones((3, 3), bool))[:, :, None]),
 }
 SUBDIVISIONS = (0, 2)
+COUNTS_AT_TIPS, NEAR = (8, 14), 2  # edges
 
 
 def main() -> None:
@@ -131,11 +133,37 @@ def of_tunnels(_: int) -> str:
     return as_table(["genus", "triangles", "cones", "predicted L2", "map L2", "defects", "maps", "place s"], 0, rows)
 
 
+def of_tips(_: int) -> str:
+    rows = []
+    for name, mesh in with_limbs():
+        whole = largest_component(mesh)
+        tips = extremities(whole)
+        for count in COUNTS_AT_TIPS:
+            placed = lsgp.place_cones(lsgp.Surface(whole.positions, whole.triangles), count=count)
+            away = distances_to_cones(whole, tips, placed).min(axis=1)
+            moved = with_cones_at(whole, tips, placed)
+            near = f"{(away <= NEAR).sum()} of {len(tips)}"
+            rows.append([name, count, near, f"{away.max():.1f}", f"{placed.mapped_l2:.3f}", f"{moved.mapped_l2:.3f}"])
+    return as_table(["mesh", "cones", "at extremities", "farthest", "map L2", "moved there"], 1, rows)
+
+
+def with_limbs() -> Iterator[tuple[str, Mesh]]:
+    for count in (3, 5, 7):
+        yield f"ball with {count} limbs", body_with_limbs(count, 1.5, 20, 0)[0]
+    yield "ball with horns and a snout", meshes.two_horned(4)
+    yield "flower", meshes.flower(4)
+    for name in ("hand-5k", "bird", "igea-16k", "suzanne-messy"):
+        if (path := SHARED / f"{name}.obj").is_file():
+            found = read_surface(path)
+            yield name, meshes.make(found.positions, found.triangles)
+
+
 PARTS: dict[str, tuple[str, Callable[[int], str]]] = {
     "meshes": ("Meshes of every kind", of_meshes),
     "misses": ("Not as predicted", of_misses),
     "flat": ("Flat faces", of_flat),
     "plates": ("Many tunnels", of_tunnels),
+    "tips": ("Extremities", of_tips),
 }
 
 

@@ -100,7 +100,8 @@ def auto_unwrap(
         few, three tenths where it saves two, or a tenth of many), packed tightly if the packer is installed. Where two
         fifths of the cuts are saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual
         map is isometric. Where symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these
-        save them. Only without cones and `count`.
+        save them. Where that costs more, only those components are symmetric on which it costs 1 % of L2 stretch, a
+        quarter of the edges cut, and no island at most. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
         half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
         0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three

@@ -64,6 +64,10 @@ class Components:
         pairs = np.unique(np.stack([self.of_triangle, result.island])[:, result.solved], axis=1)
         return self._counts(pairs[0])
 
+    def cuts(self, result: Result) -> NDArray[np.intp]:
+        """The number of edges that are cut, (c,)."""
+        return self._counts(self.of_edges(result.cut_edges))
+
     def solved(self, result: Result) -> NDArray[np.intp]:
         """The number of solved triangles, (c,)."""
         return self._counts(self.of_triangle[result.solved])

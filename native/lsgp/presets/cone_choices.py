@@ -19,6 +19,7 @@ from ..surface import Pins, Surface, surface_arrays
 from .completed_cones import CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
 from .map_comparison import (
+    costs_little,
     feature_share,
     gains_features,
     has_direction,
@@ -169,13 +170,20 @@ def _best_symmetric(
     options: Options,
     progress: tuple[Progress | None, Progress | None],
 ) -> MapThrough:
-    """The usual map, or one through symmetric cones if that costs little: with symmetric cuts, and where these cost
-    islands, with other cuts that save them.  progress: of the first map and of the other one"""
+    """The usual map, or one through symmetric cones if that costs little, or with symmetric cones on the components
+    where it does: with symmetric cuts, and where these cost islands, with other cuts that save them.
+
+    progress: of the first map and of the other ones
+    """
     mirrored = maps.attempt(symmetric, options, progress[0])
     if mirrored is None:
         return usual
     may_replace = partial(may_replace_map, square_share=options.square_share, progress=progress[1])
     best = mirrored if may_replace(mirrored[1], usual[1]) else usual
+    if best is usual:
+        partly = _partly_symmetric(maps, mirrored, usual, options, progress[1])
+        if partly is not None and may_replace(partly[1], usual[1]):
+            return partly
     has_other_cones = set(symmetric.cones.tolist()) != set(usual[0].cones.tolist())
     frees_cuts = not options.mirrored_cuts
     if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored[1], usual[1])):
@@ -184,6 +192,22 @@ def _best_symmetric(
     if free is None or not saves_islands(free[1], mirrored[1], usual[1]) or not may_replace(free[1], usual[1]):
         return best
     return free if best is usual or may_replace(free[1], best[1]) else best
+
+
+def _partly_symmetric(
+    maps: _Maps, mirrored: MapThrough, usual: MapThrough, options: Options, progress: Progress | None
+) -> MapThrough | None:
+    """The map with symmetric cones on the components where these cost little; None if these are none or all."""
+    surface = maps.solver.surface
+    components = Components.of(surface)
+    if components.count == 1:
+        return None
+    is_other = _have_other_cones(components, mirrored[0], usual[0])
+    is_cheap = costs_little(components, mirrored[1], usual[1])
+    if not (is_other & is_cheap).any() or not (is_other & ~is_cheap).any():
+        return None
+    cones = usual[0].joined(mirrored[0], surface, is_cheap[components.of_vertex])
+    return maps.attempt(replace(cones, is_symmetric=True), options, progress)
 
 
 def _best_along(

@@ -243,6 +243,19 @@ def gains_features(components: Components, along: Result, usual: Result) -> NDAr
     )
 
 
+def costs_little(components: Components, symmetric: Result, usual: Result) -> NDArray[np.bool_]:
+    """On which components symmetric cones cost little, (c,): L2 stretch up to 1 % more, a quarter more of edges cut,
+    and no further islands or defects."""
+    stretches, other_stretches = (components.stretches(result) for result in (symmetric, usual))
+    return (
+        (components.solved(symmetric) == components.solved(usual))
+        & (components.defects(symmetric) <= components.defects(usual))
+        & (stretches <= _MOST_L2 * other_stretches)
+        & (components.cuts(symmetric) <= _MOST_CUTS * components.cuts(usual))
+        & (components.islands(symmetric) <= components.islands(usual))
+    )
+
+
 def _feature_shares(components: Components, result: Result) -> FloatArray:
     """The `feature_share` of each component, 0 without features."""
     report = result.features

@@ -59,7 +59,7 @@ VerifiedChoice VerifiedPlacement::place() {
     VerifiedChoice anywhere = place_as_asked();
     if (is_better(anywhere.map, out.map)) out = std::move(anywhere);
   }
-  if (misses(out)) choose_other_angles(out);
+  if (misses(out) || out.cones.predicted_l2 > hopeless_l2) choose_other_angles(out);
   if (out.map.l2 > hopeless_l2 && is_worth_trying(out.cones)) {
     const auto present = static_cast<int>(out.cones.vertices.size());
     VerifiedChoice weaker = verified(chooser_.choose_within(usual_reach, present));
@@ -385,7 +385,9 @@ void VerifiedPlacement::take_least_distortion(MapTrial::Repairs repairs, Verifie
 // attempts of unwrapping with automatic angles.
 void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
   const std::size_t count = best.cones.vertices.size();
-  if (!chooses_angles() || count == 0 || count > most_one_by_one || !is_worth_trying(best.cones)) return;
+  if (!chooses_angles() || count == 0 || count > most_one_by_one) return;
+  // A valid map takes no repairs.
+  if (!best.map.is_valid() && !is_worth_trying(best.cones)) return;
   const auto repairs = best.map.is_off() || is_small() ? MapTrial::Repairs::all : MapTrial::Repairs::easy;
   take_least_distortion(repairs, best);
 }

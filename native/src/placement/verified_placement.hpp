@@ -25,7 +25,8 @@ struct VerifiedChoice {
 // suffice; if that misses, too, more cones than the stages have. If angles or seams of the map are off with all of
 // these, fewer are taken. A given number of cones is kept, but other choices are
 // tried if the map is worse than predicted, and then one cone after another is moved, on small surfaces also with
-// angles of least distortion at the new places. If all of these miss, these angles are tried.
+// angles of least distortion at the new places. If all of these miss, these angles are tried, and so they are where the
+// prediction is hopeless.
 //
 // At most some ten maps are computed, most of them with local repairs only, and more to move cones, hundreds of small
 // surfaces; one or two if the prediction is hopeless or there are more cones, existing or requested, than are chosen

@@ -173,9 +173,8 @@ ConeChoice ConeChooser::choose(int count) {
   for (const double reach : reaches) {
     if (reach > trusted_reach && best->predicted_l2 <= hopeless_l2) break;
     ConeChoice choice = choose_within(reach, count);
-    const bool all_there = static_cast<int>(choice.vertices.size()) <= existing_count() && choice.left_flat == 0;
     if (!best || choice.predicted_l2 - 1 < worth_strong_cones * (best->predicted_l2 - 1)) best = std::move(choice);
-    if (best->predicted_l2 <= low_l2 || options_.lattice || all_there) break;
+    if (best->predicted_l2 <= low_l2 || options_.lattice) break;
   }
   if (best->predicted_l2 <= hopeless_l2 || !best->is_possible() || options_.lattice) return *best;
   ConeChoice other = choose_harmonically(static_cast<int>(best->vertices.size()));

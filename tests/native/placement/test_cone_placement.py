@@ -147,6 +147,14 @@ def test_enough_existing_cones_are_left_alone() -> None:
     assert again.reached and again.cones.tolist() == cones.tolist()
 
 
+@pytest.mark.parametrize("mesh", [MESHES["bumpy"], MESHES["flower"], meshes.two_horned(3)])
+def test_existing_cones_get_angles_as_good_as_placed_ones(mesh: Mesh) -> None:
+    placed = place(mesh, count=8)
+    again = place(mesh, placed.cones, count=8)
+    assert again.cones.tolist() == placed.cones.tolist()
+    assert again.mapped_l2 == pytest.approx(placed.mapped_l2, rel=2e-3)
+
+
 def test_existing_cones_on_a_border_prescribe_nothing_without_an_angle() -> None:
     mesh = MESHES["hill"]
     corner = int(oracle.boundary_loops(mesh.triangles)[0][0])

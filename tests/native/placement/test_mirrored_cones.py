@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+import zoo
 from lsgp.presets import map_comparison
 from lsgp.presets.map_comparison import may_replace_map
 from map_checks import assert_curvature_adds_up, codes, only, surface
@@ -136,6 +137,18 @@ def test_the_first_press_is_symmetric_unless_that_is_turned_off_or_cones_are_giv
     assert lsgp.auto_unwrap(given, [v]) == lsgp.auto_unwrap(given, [v], symmetric=False)
 
 
+def test_each_component_is_symmetric_where_that_costs_little() -> None:
+    """Alone the box with a handle gets usual cones, since symmetric ones are many, and MESH gets symmetric ones."""
+    box, horned = zoo.member("box-with-handles-cells=5-handles=1-seed=0").mesh(), meshes.two_horned(3)
+    first = len(box.positions)
+    alone = [lsgp.auto_unwrap(surface(mesh)) for mesh in (box, horned)]
+    assert alone[0].cones.tolist() == lsgp.auto_unwrap(surface(box), symmetric=False).cones.tolist()
+    assert alone[1].cones.tolist() != lsgp.auto_unwrap(surface(horned), symmetric=False).cones.tolist()
+    joint = lsgp.auto_unwrap(surface(meshes.merge([box, horned])))
+    assert sorted(joint.cones[joint.cones < first].tolist()) == sorted(alone[0].cones.tolist())
+    assert sorted((joint.cones[joint.cones >= first] - first).tolist()) == sorted(alone[1].cones.tolist())
+
+
 def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None:
     given = surface(meshes.bumpy_sphere(2))
     assert lsgp.auto_unwrap(given) == lsgp.auto_unwrap(given, symmetric=False)
@@ -242,6 +255,7 @@ class MapsByCuts:
     usual: lsgp.Result
     mirrored: lsgp.Result
     free: lsgp.Result
+    surface: lsgp.Surface
     made: list[str] = field(default_factory=list)
 
     def parameterize(self, cones: np.ndarray, angles: object, options: lsgp.Options, *_: object) -> lsgp.Result:
@@ -267,7 +281,7 @@ def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
     pytest.importorskip("xatlas")
     unwrapping = lsgp.presets.cone_choices
     result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)))
+    maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)), surface(MESH))
     choices = unwrapping.ConeChoices(
         unwrapping.CompletedCones(np.array([], np.int32), [], None),
         unwrapping.CompletedCones(np.array([3, 5], np.int32), [None, None], None, is_symmetric=True),

@@ -7,6 +7,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from extremities import body_with_limbs, distances_to_cones, extremities, largest_component, with_cones_at
 from map_checks import surface
 from meshes import Mesh
 from placement_checks import place
@@ -80,22 +81,6 @@ def test_as_good_as_other_cones_of_the_same_number(name: str) -> None:
     assert unwrapped(mesh, place(mesh, count=len(mesh.cones))).distortion.l2_stretch <= other + 1e-3
 
 
-@pytest.mark.many_solves
-def body_with_limbs(count: int, length: float, sharpness: float, seed: int) -> tuple[Mesh, np.ndarray]:
-    """A ball with limbs in random directions, and the outermost vertex of each."""
-    rng = np.random.default_rng(seed)
-    along: list[np.ndarray] = []
-    while len(along) < count:
-        direction = rng.normal(size=3)
-        direction /= np.linalg.norm(direction)
-        if all(direction @ other < 0.6 for other in along):
-            along.append(direction)
-    ball = meshes.icosphere(3)
-    nearness = ball.positions @ np.array(along).T
-    radius = 1 + length * np.exp(sharpness * (nearness - 1)).sum(axis=1)
-    return meshes.make(ball.positions * radius[:, None], ball.triangles), nearness.argmax(axis=0)
-
-
 @pytest.mark.parametrize(("length", "sharpness"), [(1, 10), (1.5, 20)])
 @pytest.mark.parametrize("count", [3, *many_solves(5, 7)])
 def test_limbs_get_cones_at_their_tips(count: int, length: float, sharpness: float) -> None:
@@ -106,6 +91,16 @@ def test_limbs_get_cones_at_their_tips(count: int, length: float, sharpness: flo
         for tip in tips.tolist():
             near = np.append(edges[(edges == tip).any(axis=1)], tip)  # and its neighbors
             assert np.isin(near, cones).any()
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("name", ["hand-5k", "bird", "igea-16k", "suzanne-messy"])
+def test_cones_are_as_near_to_extremities_as_serves(name: str) -> None:
+    """Within two or three edges of each; at the extremities themselves they would stretch no less."""
+    mesh = largest_component(shared_mesh(name))
+    placed, tips = place(mesh, count=14), extremities(mesh)
+    assert (distances_to_cones(mesh, tips, placed).min(axis=1) <= 3).all()
+    assert with_cones_at(mesh, tips, placed).mapped_l2 >= placed.mapped_l2
 
 
 @pytest.mark.many_solves

@@ -263,6 +263,17 @@ def test_moved_cones_get_angles_beyond_their_bounds_if_these_stretch_less(name: 
     assert placed.mapped_l2 == pytest.approx(result.distortion.l2_stretch, rel=1e-6)
 
 
+@pytest.mark.parametrize(("spikes", "height"), [(4, 10), (12, 1)])
+@pytest.mark.parametrize("levels", [1, 2])
+def test_where_the_prediction_is_hopeless_angles_are_no_worse_than_those_of_least_distortion(
+    levels: int, spikes: int, height: int
+) -> None:
+    mesh = zoo.member(f"spiked-ball-levels={levels}-spikes={spikes}-height={height}").mesh()
+    placed = place(mesh, count=8)
+    other = lsgp.parameterize(surface(mesh), placed.cones)
+    assert placed.mapped_l2 <= 1.001 * other.distortion.l2_stretch
+
+
 def test_moved_cones_leave_marked_ones() -> None:
     mesh = COARSE_HANDLES["four tunnels"]
     marked = place(mesh, count=8).cones[[1, 4]]
