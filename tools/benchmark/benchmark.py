@@ -10,9 +10,9 @@ and the preset Bake beside xatlas.
 But for files, all get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and
 measures the map. Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in
 which the methods take turns, so that a busy machine hurts all alike: compare ratios within one run. Needs numpy, scipy
-and libigl beside lsgp; for Blender a Python with bpy, named by BPY_PYTHON or where tools/test puts it; for the Laplacian
-CMake, a compiler and Eigen, and libsuitesparse-dev for CHOLMOD; xatlas; for --write matplotlib. The environment variable
-BFF names the command line of BFF. What is not there is left out.
+and libigl beside lsgp; for Blender a Python with bpy, named by BPY_PYTHON or where tools/test puts it; for the
+Laplacian CMake, a compiler and Eigen, and libsuitesparse-dev for CHOLMOD; xatlas; for --write matplotlib. The
+environment variable BFF names the command line of BFF. What is not there is left out.
 
     python tools/benchmark/benchmark.py [--tables speed ...] [--largest 1000000] [--repetitions 5] [--write] [mesh ...]
 """
