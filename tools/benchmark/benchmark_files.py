@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import statistics
 import subprocess
 import sys
@@ -22,6 +21,12 @@ from benchmark_options import cpu_seconds
 # An environment variable with the path of the command line of BFF (Boundary First Flattening).
 BFF = "BFF"
 CONES = 8
+MEASURING = """\
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss)
+"""
 # xatlas takes minutes for more.
 MOST_TRIANGLES_OF_XATLAS = 60_000
 
@@ -75,16 +80,10 @@ def write_triangles(path: Path, case: Case, is_text: bool = True) -> None:
 
 def cost_of(command: Sequence[str]) -> tuple[float, float]:
     """CPU seconds of all threads, and the peak memory in megabytes, of a command that has to succeed."""
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise SystemExit(f"benchmark: {' '.join(command)} ended with {child.returncode}")
-    return _seconds_of(usage), usage.ru_maxrss / (1 << 20 if sys.platform == "darwin" else 1 << 10)
-
-
-def _seconds_of(usage: resource.struct_rusage) -> float:
-    return usage.ru_utime + usage.ru_stime
+    # By way of a small process: a child begins with the memory of its parent.
+    done = subprocess.run([sys.executable, "-c", MEASURING, *command], stdout=subprocess.PIPE, text=True, check=True)
+    seconds, peak = map(float, done.stdout.split())
+    return seconds, peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
 
 
 def measure_xatlas(case: Case, repetitions: int) -> dict[str, object]:
