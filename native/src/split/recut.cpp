@@ -20,7 +20,7 @@ namespace {
 constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. Descents with cheap cuts separate pieces that
 // would otherwise remain entangled.
-constexpr double weights[] = {1.5, 0.3, 0.7, 1.5};
+constexpr double weights[] = {1.5, 0.3, 0.7};
 // Added to the score for any overlap, since even a small one requires another island; at this small share of the
 // layout, half of that is added.
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;

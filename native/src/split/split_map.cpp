@@ -229,6 +229,12 @@ class WaySearch {
 
   const ComponentMap* chosen() const { return chosen_; }
 
+  // Whether there is a division that leaves one island.
+  bool leaves_one() const {
+    const auto is_one = [](const DividedMap& known) { return known.division.price.islands == 1; };
+    return best_.price.islands == 1 || std::any_of(regrouped_.begin(), regrouped_.end(), is_one);
+  }
+
   // The cheapest map divided, its islands regrouped where that pays.
   ComponentMap best();
 
@@ -330,10 +336,8 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   const Array<MetricMesh> weighings = rules.weighings();
   WaySearch search(rules, monitor);
   for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, {surface}, cost_of_island);
-  // Where islands are regrouped, it matters little how they were made.
-  Array<CutCost> own{CutCost::shortest, CutCost::no_slivers};
-  if (!rules.may_recut()) own.push_back(CutCost::no_small_parts);
-  search.divide(map, own, weighings, 0);
+  search.divide(map, {CutCost::shortest, CutCost::no_slivers}, weighings, 0);
+  if (!search.leaves_one()) search.divide(map, {CutCost::no_small_parts}, weighings, 0);
   map = search.best();
   return true;
 }
