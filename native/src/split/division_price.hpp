@@ -11,7 +11,7 @@ namespace lsgp {
 constexpr double cost_of_island = 0.8, cost_of_sliver = 2;
 constexpr double sliver = 0.005;  // of the area
 // What cuts may cost more for each island that regrouping saves: less than it is worth, since more of them are seen.
-constexpr double cuts_for_island = 0.2;
+constexpr double cuts_for_island = 0.1;
 
 struct DivisionPrice {
   Index islands = 0, slivers = 0;

@@ -27,6 +27,7 @@ constexpr double cost_of_one_side = 4;
 constexpr double most_demand = 1.05;
 // Regrouped maps that are kept, and whose pieces make room for others.
 constexpr std::size_t most_regrouped = 3;
+constexpr double least_saving_of_map = 0.02;  // by which a regrouped map has to cost less
 
 // A division of a map.
 struct Division {
@@ -243,7 +244,7 @@ class WaySearch {
   void regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps);
   bool pays(const Division& other) const {
     const Index saved = best_.price.islands - other.price.islands;
-    return other.cost < best_.cost &&
+    return other.cost < best_.cost - least_saving_of_map &&
            other.price.cuts <= best_.price.cuts + cuts_for_island * static_cast<double>(saved);
   }
 
@@ -292,7 +293,7 @@ ComponentMap WaySearch::best() {
   const auto regrouped =
       std::find_if(regrouped_.begin(), regrouped_.end(), [&](const DividedMap& known) { return pays(known.division); });
   const bool is_regrouped = regrouped != regrouped_.end();
-  ComponentMap out = is_regrouped ? std::move(regrouped->map) : *chosen_;
+  ComponentMap out = is_regrouped ? regrouped->map : *chosen_;
   apply(rules_.surface(), is_regrouped ? regrouped->division.parts : best_.parts, out);
   return out;
 }
