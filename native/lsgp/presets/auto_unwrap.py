@@ -25,6 +25,7 @@ from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
 from .completed_cones import CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
 from .cone_choices import best_map, follows_features, possible_cones
+from .few_islands import best_of_few
 from .map_comparison import fills_badly, may_replace_undivided
 
 Preset = Literal["paint", "tile", "bake"]
@@ -285,16 +286,22 @@ def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: 
     Raises Cancelled.
     """
     surface, cones, usual = mapped
-    keeps_few = options.compact == "sparing"
-    if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
+    if options.compact == "off" or options.square_share != 1:
         return usual
-    best, others = usual, [replace(options, square_share=_SQUARES)]
-    if not keeps_few:
-        others.append(replace(options, compact="sparing"))
-    for other in others:
+
+    def divide(other: Options) -> Result | None:
         divided = or_none(partial(cones.parameterize, solvers.of(surface), other, None, progress))
-        if divided is not None and may_replace_undivided(divided, best, keeps_few, progress):
-            best = cones.told(divided, options)
+        return None if divided is None else cones.told(divided, options)
+
+    if options.compact == "sparing":
+        return best_of_few(usual, options, Components.of(surface).count, divide, progress)
+    if not fills_badly(usual, progress):
+        return usual
+    best = usual
+    for other in (replace(options, square_share=_SQUARES), replace(options, compact="sparing")):
+        divided = divide(other)
+        if divided is not None and may_replace_undivided(divided, best, progress):
+            best = divided
     return best
 
 
