@@ -25,7 +25,6 @@ from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
 from .completed_cones import CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
 from .cone_choices import best_map, follows_features, possible_cones
-from .few_islands import best_of_few
 from .map_comparison import fills_badly, may_replace_undivided
 
 Preset = Literal["paint", "tile", "bake"]
@@ -282,26 +281,18 @@ def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: 
     better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
+    Where islands are to be few, `best_map` has decided that.
     mapped: as of `best_at_creases`. solvers: those it was made with. progress: without time of its own.
     Raises Cancelled.
     """
     surface, cones, usual = mapped
-    if options.compact == "off" or options.square_share != 1:
-        return usual
-
-    def divide(other: Options) -> Result | None:
-        divided = or_none(partial(cones.parameterize, solvers.of(surface), other, None, progress))
-        return None if divided is None else cones.told(divided, options)
-
-    if options.compact == "sparing":
-        return best_of_few(usual, options, Components.of(surface).count, divide, progress)
-    if not fills_badly(usual, progress):
+    if options.compact != "full" or options.square_share != 1 or not fills_badly(usual, progress):
         return usual
     best = usual
     for other in (replace(options, square_share=_SQUARES), replace(options, compact="sparing")):
-        divided = divide(other)
+        divided = or_none(partial(cones.parameterize, solvers.of(surface), other, None, progress))
         if divided is not None and may_replace_undivided(divided, best, progress):
-            best = divided
+            best = cones.told(divided, options)
     return best
 
 

@@ -9,13 +9,15 @@ from dataclasses import replace
 from ..base.progress import Progress
 from ..options import Options
 from ..results import Result
+from ..surface import Surface
+from .components import Components
 from .map_comparison import can_be_packed, is_as_good, island_count, measure_of_filling
 
 MakeDivided = Callable[[Options], Result | None]
 
 # What each further island has to fill in addition, of many islands a tenth of them; more than so much of the square
 # counts for no island.
-_MORE_FOR_ONE = 1.25
+_MORE_FOR_ONE = 1.2
 _WELL_FILLED = 0.55
 _ISLANDS_FOR_ONE = 10
 # Islands are divided as if they had such a part of the square: less of it, and only what saves most is cut.
@@ -24,23 +26,23 @@ _SHARES = (0.25, 0.5, 1.0, 2.0)
 
 def worth_of_filling(filled: float, islands: int, fewest: int) -> float:
     """By which divisions are compared of which one has so few islands: the part of the square that is filled, up to
-    0.55, as a quarter more of it is worth one island, or a tenth of many."""
+    0.55, as a fifth more of it is worth one island, or a tenth of many."""
     return min(filled, _WELL_FILLED) / _MORE_FOR_ONE ** (islands / _further(fewest))
 
 
 def best_of_few(
-    usual: Result, options: Options, least: int, divide: MakeDivided, progress: Progress | None = None
+    usual: Result, options: Options, surface: Surface, divide: MakeDivided, progress: Progress | None = None
 ) -> Result:
     """The map that is worth most: whole, as usual, or divided less or further.
 
-    usual: with islands made compact as the options say. least: how many islands it has at least. divide: makes the map
-    with other options; None if it cannot be made. progress: of packing.  Raises Cancelled.
+    usual: of the surface, with islands made compact as the options say. divide: makes the map with other options; None
+    if it cannot be made. progress: of packing.  Raises Cancelled.
     """
     if not can_be_packed(usual):
         return usual
     filled = measure_of_filling(usual, 1.0, progress)
     whole = None
-    if island_count(usual) > least:
+    if island_count(usual) > 1 and island_count(usual) > Components.of(surface).count:
         whole = _as_good(divide(replace(options, compact="off")), usual)
     best = usual if whole is None else whole
     fewest = island_count(best)
