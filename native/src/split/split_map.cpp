@@ -28,12 +28,15 @@ constexpr double most_demand = 1.05;
 // Regrouped maps that are kept, and whose pieces make room for others.
 constexpr std::size_t most_regrouped = 3;
 constexpr double least_saving_of_map = 0.02;  // by which a regrouped map has to cost less
+// No saved island is worth symmetry: by no more than this may its cuts without an image be longer.
+constexpr double least_one_sided = 0.01;
 
 // A division of a map.
 struct Division {
   MapParts parts;
   DivisionPrice price;
-  double cost;  // with that of cuts on one side only
+  double one_sided;  // length of cuts without an image, where there is a mirror plane, in square roots of the area
+  double cost() const { return price.total() + cost_of_one_side * one_sided; }
 };
 
 Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& map) {
@@ -114,8 +117,7 @@ class SplitRules {
   Division division(MapParts parts) const {
     const double one_sided = mirrored_ ? mirrored_->one_sided_length(parts.open) : 0;
     const DivisionPrice price = price_of_division(surface_, factor_, parts.open);
-    const double cost = price.total() + cost_of_one_side * one_sided / std::sqrt(surface_.geometry.total_area);
-    return {std::move(parts), price, cost};
+    return {std::move(parts), price, one_sided / std::sqrt(surface_.geometry.total_area)};
   }
 
   // The symmetric divisions made from either side of one, if there is a mirror plane.
@@ -140,7 +142,7 @@ class SplitRules {
     Division best = division(std::move(parts));
     for (MapParts& symmetric : mirrored) {
       Division other = division(std::move(symmetric));
-      if (other.cost < best.cost && !has_own_overlap(surface_.mesh, map, other.parts) && may_replace(other.parts))
+      if (other.cost() < best.cost() && !has_own_overlap(surface_.mesh, map, other.parts) && may_replace(other.parts))
         best = std::move(other);
     }
     return best;
@@ -244,7 +246,7 @@ class WaySearch {
   void regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps);
   bool pays(const Division& other) const {
     const Index saved = best_.price.islands - other.price.islands;
-    return other.cost < best_.cost - least_saving_of_map &&
+    return other.cost() < best_.cost() - least_saving_of_map && other.one_sided <= best_.one_sided + least_one_sided &&
            other.price.cuts <= best_.price.cuts + cuts_for_island * static_cast<double>(saved);
   }
 
@@ -261,10 +263,10 @@ void WaySearch::divide(const ComponentMap& way, const Array<CutCost>& rules, con
   const MapDivider divider(rules_, ends, way, monitor_);
   for (const CutCost rule : rules) {
     for (const MetricMesh& costs : weighings) {
-      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) return;
+      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost()) return;
       Division other = divider.divide(rule, costs);
       if (rules_.may_recut()) regroup_islands(way, other.parts, Regrouping::direct);
-      if (chosen_ && !(other.cost < best_.cost)) continue;
+      if (chosen_ && !(other.cost() < best_.cost())) continue;
       best_ = std::move(other);
       chosen_ = &way;
     }
@@ -279,7 +281,7 @@ void WaySearch::regroup_islands(const ComponentMap& way, const MapParts& parts, 
   if (!other) return;
   const PerHalfedge<char> ends = ends_of(rules_.surface(), *other);
   Division division = MapDivider(rules_, ends, *other, monitor_).divide(CutCost::shortest, rules_.surface());
-  const auto is_cheaper = [&](const DividedMap& known) { return division.cost < known.division.cost; };
+  const auto is_cheaper = [&](const DividedMap& known) { return division.cost() < known.division.cost(); };
   const auto at = std::find_if(regrouped_.begin(), regrouped_.end(), is_cheaper);
   regrouped_.insert(at, {std::move(*other), std::move(division)});
   if (regrouped_.size() > most_regrouped) regrouped_.pop_back();
