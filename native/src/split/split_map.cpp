@@ -27,7 +27,6 @@ constexpr double cost_of_one_side = 4;
 constexpr double most_demand = 1.05;
 // Regrouped maps that are kept, and whose pieces make room for others.
 constexpr std::size_t most_regrouped = 3;
-constexpr double least_saving_of_map = 0.02;  // by which a regrouped map has to cost less
 // No saved island is worth symmetry: by no more than this may its cuts without an image be longer.
 constexpr double least_one_sided = 0.01;
 
@@ -246,7 +245,7 @@ class WaySearch {
   void regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps);
   bool pays(const Division& other) const {
     const Index saved = best_.price.islands - other.price.islands;
-    return other.cost() < best_.cost() - least_saving_of_map && other.one_sided <= best_.one_sided + least_one_sided &&
+    return saved > 0 && other.cost() < best_.cost() && other.one_sided <= best_.one_sided + least_one_sided &&
            other.price.cuts <= best_.price.cuts + cuts_for_island * static_cast<double>(saved);
   }
 
