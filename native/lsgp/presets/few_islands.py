@@ -18,7 +18,7 @@ MakeDivided = Callable[[Options], Result | None]
 # What each further island has to fill in addition, of many islands a tenth of them; more than so much of the square
 # counts for no island.
 _MORE_FOR_ONE = 1.2
-_WELL_FILLED = 0.55
+_WELL_FILLED = 0.53
 _ISLANDS_FOR_ONE = 10
 # Islands are divided as if they had such a part of the square: less of it, and only what saves most is cut.
 _SHARES = (0.25, 0.5, 1.0, 2.0)
@@ -26,7 +26,7 @@ _SHARES = (0.25, 0.5, 1.0, 2.0)
 
 def worth_of_filling(filled: float, islands: int, fewest: int) -> float:
     """By which divisions are compared of which one has so few islands: the part of the square that is filled, up to
-    0.55, as a fifth more of it is worth one island, or a tenth of many."""
+    0.53, as a fifth more of it is worth one island, or a tenth of many."""
     return min(filled, _WELL_FILLED) / _MORE_FOR_ONE ** (islands / _further(fewest))
 
 
