@@ -282,19 +282,17 @@ def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: 
     better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
+    Where islands are to be few, `best_map` has decided that.
     mapped: as of `best_at_creases`. solvers: those it was made with. progress: without time of its own.
     Raises Cancelled.
     """
     surface, cones, usual = mapped
-    keeps_few = options.compact == "sparing"
-    if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
+    if options.compact != "full" or options.square_share != 1 or not fills_badly(usual, progress):
         return usual
-    best, others = usual, [replace(options, square_share=_SQUARES)]
-    if not keeps_few:
-        others.append(replace(options, compact="sparing"))
-    for other in others:
+    best = usual
+    for other in (replace(options, square_share=_SQUARES), replace(options, compact="sparing")):
         divided = or_none(partial(cones.parameterize, solvers.of(surface), other, None, progress))
-        if divided is not None and may_replace_undivided(divided, best, keeps_few, progress):
+        if divided is not None and may_replace_undivided(divided, best, progress):
             best = cones.told(divided, options)
     return best
 

@@ -18,6 +18,7 @@ from ..results import Result
 from ..surface import Pins, Surface, surface_arrays
 from .completed_cones import CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
+from .few_islands import best_of_few
 from .map_comparison import (
     costs_little,
     feature_share,
@@ -156,7 +157,16 @@ class _Maps:
     pins: Pins | None
 
     def through(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough:
-        return cones, cones.parameterize(self.solver, options, self.pins, progress)
+        usual = cones.parameterize(self.solver, options, self.pins, progress)
+        if options.compact != "sparing" or options.square_share != 1 or self.pins is not None:
+            return cones, usual
+        # Other divisions of the same map have no time of their own.
+        end = share_of(progress, 1.0, 1.0)
+
+        def divide(other: Options) -> Result | None:
+            return or_none(partial(cones.parameterize, self.solver, other, None, end))
+
+        return cones, best_of_few(usual, options, self.solver.surface, divide, end)
 
     def attempt(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough | None:
         """None if the library refuses it."""

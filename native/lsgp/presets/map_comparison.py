@@ -40,13 +40,9 @@ _ISLANDS_FOR_ONE = 10
 # More of the square than this is rarely filled.
 WELL_FILLED = 0.6
 # Where islands need not be few, those of small meshes are divided otherwise up to here, as that often fills a tenth
-# more; on others it takes seconds. Where they are to be few, they are divided further only if less is filled, and into
-# more than three only if it is less still.
+# more; on others it takes seconds.
 _NEARLY_FILLED = 0.7
 SMALL_MESH = 5000  # triangles
-_HALF_FILLED = 0.5
-_HARDLY_FILLED = 0.4
-_MOST_WHERE_FEW = 3
 # What twice as many islands have to fill in addition where islands need not be few.
 _FILLED_FOR_TWICE = 0.3
 _PAIR = 2
@@ -111,36 +107,37 @@ def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
     return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
 
 
-def fills_badly(usual: Result, keeps_few: bool, progress: Progress | None = None) -> bool:
-    """Whether two fifths of the square, three tenths with a small mesh, half of it where islands are to be few, stay
-    empty even if it is packed tightly; False where that cannot be known."""
-    can_be_known = packer_name() is not None and island_count(usual) <= _MOST_PACKED
-    usually = _NEARLY_FILLED if len(usual.island) <= SMALL_MESH else WELL_FILLED
-    most = _HALF_FILLED if keeps_few else usually
-    return can_be_known and _filled_when_packed(usual, progress) < most
+def can_be_packed(usual: Result) -> bool:
+    """Whether packing a map tightly tells how well it fills the square, and does not take long."""
+    return packer_name() is not None and island_count(usual) <= _MOST_PACKED
 
 
-def may_replace_undivided(divided: Result, usual: Result, keeps_few: bool, progress: Progress | None = None) -> bool:
-    """Whether further divisions are worth their islands: a tenth more of the square without further ones, a quarter
-    more for one, and two fifths for two (a tenth of many), L2 stretch up to 1 % more and no further defects.
+def fills_badly(usual: Result, progress: Progress | None = None) -> bool:
+    """Whether two fifths of the square, three tenths with a small mesh, stay empty even if it is packed tightly; False
+    where that cannot be known."""
+    most = _NEARLY_FILLED if len(usual.island) <= SMALL_MESH else WELL_FILLED
+    return can_be_packed(usual) and _filled_when_packed(usual, progress) < most
 
-    keeps_few: whether that is the most, and more than three islands only replace what fills less than two fifths;
-    otherwise twice as many islands have to fill three tenths more, fewer further ones proportionally less.
+
+def may_replace_undivided(divided: Result, usual: Result, progress: Progress | None = None) -> bool:
+    """Whether further divisions are worth their islands, which need not be few: twice as many have to fill three tenths
+    more of the square, fewer further ones proportionally less, at L2 stretch up to 1 % more and no further defects.
     progress: of packing.  Raises Cancelled.
     """
+    if not is_as_good(divided, usual):
+        return False
     islands, more = island_count(usual), island_count(divided) - island_count(usual)
-    if not (
-        divided.solved.tolist() == usual.solved.tolist()
-        and defects(divided) <= defects(usual)
-        and divided.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
-        and (more <= worthwhile(usual) or not keeps_few)
-    ):
-        return False
-    filled = _filled_when_packed(usual, progress)
-    if keeps_few and more > 0 and islands + more > _MOST_WHERE_FEW and filled >= _HARDLY_FILLED:
-        return False
-    most = least_filled(-more, divided) if keeps_few else 1 / (1 + _FILLED_FOR_TWICE * max(0, more) / islands)
-    return filled < most * _filled_when_packed(divided, progress)
+    most = 1 / (1 + _FILLED_FOR_TWICE * max(0, more) / islands)
+    return _filled_when_packed(usual, progress) < most * _filled_when_packed(divided, progress)
+
+
+def is_as_good(other: Result, usual: Result) -> bool:
+    """Whether a map with other islands has L2 stretch up to 1 % more, and no further defects."""
+    return (
+        other.solved.tolist() == usual.solved.tolist()
+        and defects(other) <= defects(usual)
+        and other.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+    )
 
 
 def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:

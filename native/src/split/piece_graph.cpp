@@ -15,6 +15,7 @@ namespace {
 
 constexpr double least_piece_area = 0.004;  // of the surface
 constexpr double operations_a_border = 20;
+constexpr double operations_a_path = 20;  // of finding the open ones
 
 // Merges small pieces across paths that are not cut.
 class PieceMerger {
@@ -161,6 +162,40 @@ PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map,
                              double resolution) {
   PieceMerger(surface, map.cut_graph.is_cut, network).merge_small();
   return Builder(surface, map, resolution).build(std::move(network));
+}
+
+PerPart<Array<Index>> paths_of_pieces(const PieceGraph& graph) {
+  PerPart<Array<Index>> out(graph.piece_count());
+  for (Index p = 0; p < ssize(graph.paths); ++p) {
+    const PieceGraph::Path& path = graph.paths[p];
+    if (path.left == path.right) continue;
+    for (const Index piece : {path.left, path.right}) out[piece].push_back(p);
+  }
+  return out;
+}
+
+Array<char> open_paths(const PieceGraph& graph, const Array<char>& in_tree) {
+  Array<char> open(in_tree.size(), 0);
+  Array<Index> degree(graph.is_end.size(), 0), sum(graph.is_end.size(), 0);  // of the open paths at each node
+  const auto change = [&](Index p, Index by) {
+    open[p] = by > 0;
+    for (const Index node : graph.paths[p].nodes) {
+      degree[node] += by;
+      sum[node] += by * p;
+    }
+  };
+  for (Index p = 0; p < ssize(open); ++p) {
+    if (!in_tree[p]) change(p, 1);
+  }
+  for (Index node = 0; node < ssize(degree); ++node) {
+    for (Index at = node; degree[at] == 1 && !graph.is_end[at];) {
+      const Index last = sum[at];
+      change(last, -1);
+      at = graph.paths[last].nodes[graph.paths[last].nodes[0] == at];
+    }
+  }
+  checkpoint(operations_a_path * static_cast<double>(open.size()));
+  return open;
 }
 
 void price_paths(const MetricMesh& costs, PieceGraph& graph) {

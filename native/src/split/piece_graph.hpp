@@ -21,6 +21,7 @@ struct PieceGraph {
     double cost;             // of a cut along it, by price_paths
     Index nodes[2];
     bool is_cut;
+    Index across_from(Index piece) const { return left == piece ? right : left; }
   };
   struct Side {
     Complex tail, head;
@@ -38,6 +39,13 @@ struct PieceGraph {
 // resolution: sides of boundaries inside the surface are merged up to about this length.
 PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
                              double resolution);
+
+// The paths beside each piece that lead to other ones.
+PerPart<Array<Index>> paths_of_pieces(const PieceGraph& graph);
+
+// All paths outside a spanning forest, except dead ends: at a node that needs no cut, a last open path is closed as
+// well.  in_tree, return: (paths) 0 or 1.
+Array<char> open_paths(const PieceGraph& graph, const Array<char>& in_tree);
 
 // costs: the surface, with those of cuts.
 void price_paths(const MetricMesh& costs, PieceGraph& graph);

@@ -20,7 +20,7 @@ namespace {
 constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. Descents with cheap cuts separate pieces that
 // would otherwise remain entangled.
-constexpr double weights[] = {1.5, 0.3, 0.7, 1.5};
+constexpr double weights[] = {1.5, 0.3, 0.7};
 // Added to the score for any overlap, since even a small one requires another island; at this small share of the
 // layout, half of that is added.
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;
@@ -28,7 +28,6 @@ constexpr double largest_cost = 1.25;     // of the given cuts
 constexpr double least_gain = 1e-4;       // of the score
 constexpr double most_work = 1e7;         // sides of boundary polygons visited
 constexpr double operations_a_side = 30;  // of a boundary polygon on the raster
-constexpr double operations_a_path = 20;  // of finding the open ones
 
 struct Circle {
   Complex center;
@@ -77,11 +76,7 @@ class Recutter {
     const double share = std::max(overlap, 0.0) / area_;
     return std::sqrt(share) + any_overlap * share / (share + small_overlap) + weight * (cost / first_cost_ - 1);
   }
-  Index across(Index path, Index piece) const {
-    return graph_.paths[path].left == piece ? graph_.paths[path].right : graph_.paths[path].left;
-  }
   void span();
-  Array<char> open_paths(const Array<char>& in_tree) const;
   double cost_of(const Array<char>& in_tree) const;
   double measure_overlap();
   void descend(double weight);
@@ -104,12 +99,7 @@ class Recutter {
 };
 
 Recutter::Recutter(PieceGraph graph, double area)
-    : graph_(std::move(graph)), area_(area), paths_of_(graph_.piece_count()) {
-  for (Index p = 0; p < ssize(graph_.paths); ++p) {
-    const Path& path = graph_.paths[p];
-    if (path.left == path.right) continue;
-    for (const Index piece : {path.left, path.right}) paths_of_[piece].push_back(p);
-  }
+    : graph_(std::move(graph)), area_(area), paths_of_(paths_of_pieces(graph_)) {
   for (const auto& boundary : graph_.boundary) circles_.push_back(circle_around(boundary));
   now_.motion.resize(graph_.piece_count());
   span();
@@ -127,7 +117,7 @@ void Recutter::span() {
     front.assign(1, seed);
     for (std::size_t i = 0; i < front.size(); ++i) {
       for (const Index p : paths_of_[front[i]]) {
-        const Index other = across(p, front[i]);
+        const Index other = graph_.paths[p].across_from(front[i]);
         if (graph_.paths[p].is_cut || is_reached[other]) continue;
         is_reached[other] = now_.in_tree[p] = 1;
         front.push_back(other);
@@ -136,33 +126,8 @@ void Recutter::span() {
   }
 }
 
-// All paths outside the tree, except dead ends: at a node that needs no cut, a last open path is closed as well.
-Array<char> Recutter::open_paths(const Array<char>& in_tree) const {
-  Array<char> open(in_tree.size(), 0);
-  Array<Index> degree(graph_.is_end.size(), 0), sum(graph_.is_end.size(), 0);  // of the open paths at each node
-  const auto change = [&](Index p, Index by) {
-    open[p] = by > 0;
-    for (const Index node : graph_.paths[p].nodes) {
-      degree[node] += by;
-      sum[node] += by * p;
-    }
-  };
-  for (Index p = 0; p < ssize(open); ++p) {
-    if (!in_tree[p]) change(p, 1);
-  }
-  for (Index node = 0; node < ssize(degree); ++node) {
-    for (Index at = node; degree[at] == 1 && !graph_.is_end[at];) {
-      const Index last = sum[at];
-      change(last, -1);
-      at = graph_.paths[last].nodes[graph_.paths[last].nodes[0] == at];
-    }
-  }
-  checkpoint(operations_a_path * static_cast<double>(open.size()));
-  return open;
-}
-
 double Recutter::cost_of(const Array<char>& in_tree) const {
-  const Array<char> open = open_paths(in_tree);
+  const Array<char> open = open_paths(graph_, in_tree);
   double out = 0;
   for (std::size_t p = 0; p < open.size(); ++p) out += open[p] ? graph_.paths[p].cost : 0;
   return out;
@@ -176,7 +141,7 @@ Array<Index> Recutter::pieces_behind(Index opened, Index seed) const {
   Array<Index> out{seed};
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (const Index p : paths_of_[out[i]]) {
-      const Index other = across(p, out[i]);
+      const Index other = graph_.paths[p].across_from(out[i]);
       if (!now_.in_tree[p] || p == opened || is_reached[other]) continue;
       is_reached[other] = 1;
       out.push_back(other);
@@ -276,7 +241,7 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
 void Recutter::descend(double weight) {
   now_.overlap = measure_overlap();
   now_.cost = cost_of(now_.in_tree);
-  is_open_ = open_paths(now_.in_tree);
+  is_open_ = open_paths(graph_, now_.in_tree);
   Array<Index> moving;
   const Index count = static_cast<Index>(graph_.paths.size());
   for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried) {
@@ -288,7 +253,7 @@ void Recutter::descend(double weight) {
     for (const Index piece : moving) now_.motion[piece] = exchange.motion * now_.motion[piece];
     now_.overlap = exchange.overlap;
     now_.cost = exchange.cost;
-    is_open_ = open_paths(now_.in_tree);
+    is_open_ = open_paths(graph_, now_.in_tree);
     tried = 0;
   }
 }
@@ -310,7 +275,7 @@ Array<Recutter::State> Recutter::search() {
 
 PerHalfedge<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state) const {
   PerHalfedge<char> out(mesh.halfedge_count(), 0);
-  const Array<char> open = open_paths(state.in_tree);
+  const Array<char> open = open_paths(graph_, state.in_tree);
   for (std::size_t p = 0; p < open.size(); ++p) {
     if (!open[p]) continue;
     for (const Index h : graph_.paths[p].halfedges) out[h] = out[mesh.twin[h]] = 1;

@@ -4,50 +4,38 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "plane/convex_hull.hpp"
 #include "split/cut_apart.hpp"
+#include "split/division_price.hpp"
 #include "split/merge_islands.hpp"
 #include "split/mirrored_islands.hpp"
 #include "split/recut.hpp"
+#include "split/regroup.hpp"
 #include "split/split_overlaps.hpp"
 
 namespace lsgp {
 
 namespace {
 
-// Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area;
-// additional cost of such cuts without a mirror image where cuts are symmetric.
-constexpr double cost_of_island = 0.8, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
-constexpr double sliver = 0.005;  // of the area
+// Additional cost of cuts without a mirror image where cuts are symmetric.
+constexpr double cost_of_one_side = 4;
 // The share of a square that islands alike on both sides may take, relative to that of islands cut only to fill it.
 constexpr double most_demand = 1.05;
-
-// factor: as from relative_cut_factors.
-double cost(const MetricMesh& surface, const PerHalfedge<double>& factor, const PerHalfedge<char>& ends) {
-  const HalfedgeMesh& mesh = surface.mesh;
-  const Geometry& geometry = surface.geometry;
-  double length = 0;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (ends[h] && mesh.twin[h] > h) length += geometry.length[h] * (factor.empty() ? 1 : factor[h]);
-  }
-  PerTriangle<Index> island;
-  PerPart<double> area(label_parts(mesh, ends, island), 0);
-  for (Index f = 0; f < mesh.triangle_count(); ++f) area[island[f]] += geometry.area[f];
-  const auto slivers =
-      std::count_if(area.begin(), area.end(), [&](double own) { return own < sliver * geometry.total_area; });
-  return cost_of_island * static_cast<double>(area.size()) + cost_of_sliver * static_cast<double>(slivers) +
-         cost_of_cut * length / std::sqrt(geometry.total_area);
-}
+// Regrouped maps that are kept, and whose pieces make room for others.
+constexpr std::size_t most_regrouped = 3;
+// No saved island is worth symmetry: by no more than this may its cuts without an image be longer.
+constexpr double least_one_sided = 0.01;
 
 // A division of a map.
 struct Division {
   MapParts parts;
-  double cost;
+  DivisionPrice price;
+  double one_sided;  // length of cuts without an image, where there is a mirror plane, in square roots of the area
+  double cost() const { return price.total() + cost_of_one_side * one_sided; }
 };
 
 Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& map) {
@@ -123,10 +111,12 @@ class SplitRules {
     return out;
   }
   bool is_mirrored() const { return mirrored_.has_value(); }
-  double least_cost(const PerHalfedge<char>& ends) const { return cost(surface_, factor_, ends); }
-  double cost_of(const PerHalfedge<char>& ends) const {
-    const double one_sided = mirrored_ ? mirrored_->one_sided_length(ends) : 0;
-    return least_cost(ends) + cost_of_one_side * one_sided / std::sqrt(surface_.geometry.total_area);
+  const PerHalfedge<double>& factor() const { return factor_; }
+  double least_cost(const PerHalfedge<char>& ends) const { return price_of_division(surface_, factor_, ends).total(); }
+  Division division(MapParts parts) const {
+    const double one_sided = mirrored_ ? mirrored_->one_sided_length(parts.open) : 0;
+    const DivisionPrice price = price_of_division(surface_, factor_, parts.open);
+    return {std::move(parts), price, one_sided / std::sqrt(surface_.geometry.total_area)};
   }
 
   // The symmetric divisions made from either side of one, if there is a mirror plane.
@@ -148,12 +138,11 @@ class SplitRules {
       mirrored.push_back(mirrored_->along_both(map, parts.open));
       if (auto led = mirrored_->along_plane(map, parts.open)) mirrored.push_back(std::move(*led));
     }
-    const double total = cost_of(parts.open);
-    Division best{std::move(parts), total};
-    for (MapParts& other : mirrored) {
-      const double cost = cost_of(other.open);
-      if (cost < best.cost && !has_own_overlap(surface_.mesh, map, other) && may_replace(other))
-        best = {std::move(other), cost};
+    Division best = division(std::move(parts));
+    for (MapParts& symmetric : mirrored) {
+      Division other = division(std::move(symmetric));
+      if (other.cost() < best.cost() && !has_own_overlap(surface_.mesh, map, other.parts) && may_replace(other.parts))
+        best = std::move(other);
     }
     return best;
   }
@@ -208,38 +197,6 @@ PerHalfedge<char> ends_of(const OpenedSurface& surface, const ComponentMap& map)
   return ends;
 }
 
-// The cheapest division of maps that differ by their cuts.
-class WaySearch {
- public:
-  WaySearch(const SplitRules& rules, ProgressMonitor& monitor) : rules_(rules), monitor_(monitor) {}
-
-  // weighings: the surface with each of the costs that further cuts may have.  least: dividing an overlapping layout is
-  // assumed to add at least this cost.
-  void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, const Array<MetricMesh>& weighings,
-              double least) {
-    const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
-    const MapDivider divider(rules_, ends, way, monitor_);
-    for (const CutCost rule : rules) {
-      for (const MetricMesh& costs : weighings) {
-        if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) return;
-        Division other = divider.divide(rule, costs);
-        if (chosen_ && !(other.cost < best_.cost)) continue;
-        best_ = std::move(other);
-        chosen_ = &way;
-      }
-    }
-  }
-
-  const Division& best() const { return best_; }
-  const ComponentMap* chosen() const { return chosen_; }
-
- private:
-  const SplitRules& rules_;
-  ProgressMonitor& monitor_;
-  Division best_{};
-  const ComponentMap* chosen_ = nullptr;  // none so far
-};
-
 // The map of the pieces that a division leaves.
 void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
@@ -255,6 +212,91 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
     is_cut[h] = is_cut[h] || !surface.open[h] || here.angle != there.angle || here.shift != there.shift;
   }
   cut_apart(mesh, std::move(is_cut), part, motion, map);
+}
+
+// A map and its division.
+struct DividedMap {
+  ComponentMap map;
+  Division division;
+};
+
+// The cheapest division of maps that differ by their cuts.
+class WaySearch {
+ public:
+  WaySearch(const SplitRules& rules, ProgressMonitor& monitor) : rules_(rules), monitor_(monitor) {}
+
+  // weighings: the surface with each of the costs that further cuts may have.  least: dividing an overlapping layout is
+  // assumed to add at least this cost.
+  void divide(const ComponentMap& way, const Array<CutCost>& rules, const Array<MetricMesh>& weighings, double least);
+
+  const ComponentMap* chosen() const { return chosen_; }
+
+  // Whether there is a division that leaves one island.
+  bool leaves_one() const {
+    const auto is_one = [](const DividedMap& known) { return known.division.price.islands == 1; };
+    return best_.price.islands == 1 || std::any_of(regrouped_.begin(), regrouped_.end(), is_one);
+  }
+
+  // The cheapest map divided, its islands regrouped where that pays.
+  ComponentMap best();
+
+ private:
+  // Other islands of a divided map.
+  void regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps);
+  bool pays(const Division& other) const {
+    const Index saved = best_.price.islands - other.price.islands;
+    return saved > 0 && other.cost() < best_.cost() && other.one_sided <= best_.one_sided + least_one_sided &&
+           other.price.cuts <= best_.price.cuts + cuts_for_island * static_cast<double>(saved);
+  }
+
+  const SplitRules& rules_;
+  ProgressMonitor& monitor_;
+  Division best_{};
+  const ComponentMap* chosen_ = nullptr;  // none so far
+  Array<DividedMap> regrouped_;           // the cheapest first
+};
+
+void WaySearch::divide(const ComponentMap& way, const Array<CutCost>& rules, const Array<MetricMesh>& weighings,
+                       double least) {
+  const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
+  const MapDivider divider(rules_, ends, way, monitor_);
+  for (const CutCost rule : rules) {
+    for (const MetricMesh& costs : weighings) {
+      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost()) return;
+      Division other = divider.divide(rule, costs);
+      if (rules_.may_recut()) regroup_islands(way, other.parts, Regrouping::direct);
+      if (chosen_ && !(other.cost() < best_.cost())) continue;
+      best_ = std::move(other);
+      chosen_ = &way;
+    }
+  }
+}
+
+void WaySearch::regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps) {
+  monitor_.advance(0);
+  ComponentMap divided = way;
+  apply(rules_.surface(), parts, divided);
+  std::optional<ComponentMap> other = regroup(rules_.surface(), rules_.factor(), steps, divided);
+  if (!other) return;
+  const PerHalfedge<char> ends = ends_of(rules_.surface(), *other);
+  Division division = MapDivider(rules_, ends, *other, monitor_).divide(CutCost::shortest, rules_.surface());
+  const auto is_cheaper = [&](const DividedMap& known) { return division.cost() < known.division.cost(); };
+  const auto at = std::find_if(regrouped_.begin(), regrouped_.end(), is_cheaper);
+  regrouped_.insert(at, {std::move(*other), std::move(division)});
+  if (regrouped_.size() > most_regrouped) regrouped_.pop_back();
+}
+
+ComponentMap WaySearch::best() {
+  const Array<DividedMap> direct = regrouped_;
+  for (const DividedMap& known : direct) {
+    if (known.division.price.islands > 1) regroup_islands(known.map, known.division.parts, Regrouping::detours);
+  }
+  const auto regrouped =
+      std::find_if(regrouped_.begin(), regrouped_.end(), [&](const DividedMap& known) { return pays(known.division); });
+  const bool is_regrouped = regrouped != regrouped_.end();
+  ComponentMap out = is_regrouped ? regrouped->map : *chosen_;
+  apply(rules_.surface(), is_regrouped ? regrouped->division.parts : best_.parts, out);
+  return out;
 }
 
 // Maps with the same cuts are alike but for a motion.
@@ -290,17 +332,15 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   const ProgressMonitor::Stage stage(monitor, "split");
   if (find_own_overlaps(surface.mesh, map).empty()) return false;
   const SplitRules rules(surface, task, map);
-  // The fastest rule selects among the recut maps. The map's own cuts compete with every rule, so that recutting never
+  // The fastest rule selects among the recut maps. The map's own cuts compete with others, so that recutting never
   // costs more. All divisions are judged by the given costs of cuts, those found by length as well.
   const Array<ComponentMap> ways = find_ways(rules, map);
   const Array<MetricMesh> weighings = rules.weighings();
   WaySearch search(rules, monitor);
   for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, {surface}, cost_of_island);
-  if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
-  search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
-  ComponentMap chosen = *search.chosen();
-  apply(surface, search.best().parts, chosen);
-  map = std::move(chosen);
+  search.divide(map, {CutCost::shortest, CutCost::no_slivers}, weighings, 0);
+  if (!search.leaves_one()) search.divide(map, {CutCost::no_small_parts}, weighings, 0);
+  map = search.best();
   return true;
 }
 

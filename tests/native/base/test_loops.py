@@ -398,13 +398,27 @@ REVIEWED = {
             "each round makes two groups one, or one as large as need be",
             OWN,
         ),
-    ],
-    "split/recut.cpp": [
         (
-            "for (Index at = node; degree[at] == 1 && !graph_.is_end[at];)",
+            "for (Index at = node; degree[at] == 1 && !graph.is_end[at];)",
             "each round closes a path",
             SHORT,
         ),
+    ],
+    "split/regroup.cpp": [
+        ("while (join_once())", "each round lowers the score by least_saving", OWN),
+        ("while (exchange())", "each round lowers the score by least_saving", OWN),
+        (
+            "for (Index p = 0, unchanged = 0; unchanged < count && !is_spent(); p = (p + 1) % count, ++unchanged)",
+            "all paths in turn, again only after one that lowers the score by least_saving",
+            OWN,
+        ),
+        (
+            "for (Index p = 0, unchanged = 0; unchanged < count; p = (p + 1) % count, ++unchanged)",
+            "all paths in turn, again only after one that lowers the score by least_saving",
+            OWN,
+        ),
+    ],
+    "split/recut.cpp": [
         (
             "for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried)",
             "all paths in turn, again only after one that lowers the score by least_gain",

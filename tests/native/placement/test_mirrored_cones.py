@@ -286,6 +286,7 @@ def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
         unwrapping.CompletedCones(np.array([], np.int32), [], None),
         unwrapping.CompletedCones(np.array([3, 5], np.int32), [None, None], None, is_symmetric=True),
     )
-    _, best = unwrapping.best_map(maps, choices, lsgp.preset_options("paint"))
+    whole = replace(lsgp.preset_options("paint"), compact="off")
+    _, best = unwrapping.best_map(maps, choices, whole)
     assert maps.made == ["usual", "mirrored", "free"][: 2 + tried]
     assert best == getattr(maps, chosen)
