@@ -2,6 +2,7 @@
 #include "polygons.hpp"
 
 #include <pybind11/numpy.h>
+#include <pybind11/typing.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,7 +10,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -154,12 +157,48 @@ Places doubled_diagonals(const Places& triangles, const Vertices& corners, const
   return Places(static_cast<py::ssize_t>(found.size()), found.data());
 }
 
+// The corners with coordinates that no corner of their vertex before them has, ascending, (k), and of every corner the
+// place of the one among these that it equals, (c).  vertices: (c), not negative.  uv: (c, 2), finite.
+py::typing::Tuple<Places, Places> distinct_corners(const Places& vertices, const Numbers& uv) {
+  const auto vertex = vertices.unchecked<1>();
+  const auto at = uv.unchecked<2>();
+  const py::ssize_t count = vertex.shape(0);
+  std::int64_t largest = -1;
+  for (py::ssize_t c = 0; c < count; ++c) largest = std::max(largest, vertex(c));
+  // Most vertices have the same coordinates at all corners; those at cuts have few others.
+  constexpr std::int64_t none = -1;
+  std::vector<std::int64_t> first(static_cast<std::size_t>(largest + 1), none), found;
+  std::map<std::tuple<std::int64_t, double, double>, std::int64_t> others;
+  Places place(count);
+  auto out = place.mutable_unchecked<1>();
+  for (py::ssize_t c = 0; c < count; ++c) {
+    std::int64_t& known = first[static_cast<std::size_t>(vertex(c))];
+    const auto next = static_cast<std::int64_t>(found.size());
+    if (known == none) {
+      known = next;
+    } else {
+      const auto own = found[static_cast<std::size_t>(known)];
+      if (at(own, 0) == at(c, 0) && at(own, 1) == at(c, 1)) {
+        out(c) = known;
+        continue;
+      }
+      const auto [entry, is_new] = others.try_emplace({vertex(c), at(c, 0), at(c, 1)}, next);
+      out(c) = entry->second;
+      if (!is_new) continue;
+    }
+    out(c) = next;
+    found.push_back(c);
+  }
+  return py::make_tuple(Places(static_cast<py::ssize_t>(found.size()), found.data()), place);
+}
+
 }  // namespace
 
 void define_polygons(py::module_& module) {
   using py::literals::operator""_a;
   module.def("polygon_edges", &polygon_edges, "corners"_a, "sizes"_a, "vertex_count"_a);
   module.def("quad_diagonals", &quad_diagonals, "positions"_a, "quads"_a);
+  module.def("distinct_corners", &distinct_corners, "vertices"_a, "uv"_a);
   module.def("doubled_diagonals", &doubled_diagonals, "triangles"_a, "corners"_a, "sizes"_a, "edges"_a,
              "vertex_count"_a);
 }

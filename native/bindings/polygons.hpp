@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polygons and their diagonals, in passes over all of them, for `lsgp.io.polygons`.
+// Polygons, their diagonals and their corners, in passes over all of them, for `lsgp.io` and `lsgp.indexed_uv`.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _lsgp
 from .base import arguments
 
 
@@ -34,17 +35,5 @@ def index_corners(
 
     vertices: (c,). uv: (c, 2), finite.
     """
-    corners = np.arange(len(vertices))
-    # The first corner of each vertex stands for it; of those assigned to one place the last stays.
-    first = np.zeros(int(vertices.max(initial=-1)) + 1, np.int64)
-    first[vertices[::-1]] = corners[::-1]
-    stands_for = first[vertices]
-    others = np.flatnonzero((uv != uv[stands_for]).any(axis=1))
-    if len(others):
-        # Corners at cuts. The sort is stable: of equal ones the first in the file comes first.
-        order = others[np.lexsort((uv[others, 1], uv[others, 0], vertices[others]))]
-        new = np.ones(len(order), bool)
-        new[1:] = (np.diff(vertices[order]) != 0) | (np.diff(uv[order], axis=0) != 0).any(axis=1)
-        stands_for[order] = order[new][np.cumsum(new) - 1]
-    listed = stands_for == corners
-    return uv[listed], (np.cumsum(listed) - 1)[stands_for]
+    first, index = _lsgp.distinct_corners(vertices, uv)
+    return uv[first], index

@@ -61,6 +61,8 @@ def index_polygon_corners(
     missing = np.isnan(corner_uv).any(axis=1)
     polygon = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
     mapped = np.bincount(polygon[missing], minlength=len(mesh.sizes)) == 0
+    if mapped.all():
+        return *index_corners(mesh.corners, corner_uv), mapped
     has_uv = mapped[polygon]
     vt, found = index_corners(mesh.corners[has_uv], corner_uv[has_uv])
     index = np.full(len(corner_uv), -1, np.int64)
