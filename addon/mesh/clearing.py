@@ -16,17 +16,20 @@ ATTRIBUTES = (
     identifiers.LOG_SCALE_ATTRIBUTE,
     identifiers.GAIN_ATTRIBUTE,
     identifiers.UP_ATTRIBUTE,
+    identifiers.FEATURE_ATTRIBUTE,
 )
 
 
 def clear_data(obj: bpy.types.Object, group_name: str) -> bool:
-    """Remove the vertex group, the attributes and the report.  Returns whether there were any."""
+    """Remove the vertex groups of cones and of cut costs, the attributes and the report.  Returns whether there were
+    any."""
     mesh = obj.data
-    group = obj.vertex_groups.get(group_name)
-    if group is not None:
+    groups = [group for group in obj.vertex_groups if group.name in {group_name, identifiers.SEAM_COST_GROUP}]
+    # Blender numbers the groups after a removed one anew.
+    for group in reversed(groups):
         obj.vertex_groups.remove(group)
     # All of them, whatever the first ones say.
-    removed = [distortion.clear(mesh), reports.forget(mesh), _remove_attributes(mesh), group is not None]
+    removed = [distortion.clear(mesh), reports.forget(mesh), _remove_attributes(mesh), bool(groups)]
     tag_update(mesh)
     return any(removed)
 
@@ -39,7 +42,7 @@ def _remove_attributes(mesh: bpy.types.Mesh) -> bool:
         return bool(present)
     bm = bmesh.from_edit_mesh(mesh)
     present = False
-    for kind in (bm.verts.layers.float, bm.verts.layers.int, bm.faces.layers.float_vector):
+    for kind in (bm.verts.layers.float, bm.verts.layers.int, bm.edges.layers.bool, bm.faces.layers.float_vector):
         for name in ATTRIBUTES:
             if (layer := kind.get(name)) is not None:
                 kind.remove(layer)

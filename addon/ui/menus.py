@@ -88,10 +88,14 @@ def draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 
 def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.separator()
-    self.layout.operator_context = "INVOKE_DEFAULT"
-    self.layout.operator(identifiers.AUTO_UNWRAP)
-    self.layout.menu(VIEW3D_MT_cone_unwrap.bl_idname)
+    layout = self.layout
+    before = layout.operator_context
+    layout.operator_context = "INVOKE_DEFAULT"
+    layout.operator(identifiers.AUTO_UNWRAP)
+    # Blender's own entries, which follow, keep theirs.
+    layout.operator_context = before
+    layout.menu(VIEW3D_MT_cone_unwrap.bl_idname)
+    layout.separator()
 
 
 def draw_remesh(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
@@ -106,9 +110,10 @@ def draw_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
         draw_submenu(self, context)
 
 
-# IMAGE_MT_uvs_unwrap is also part of the U menu of the 3D view (VIEW3D_MT_uv_map). Cones are next to seams.
+# Where Auto Unwrap comes first; IMAGE_MT_uvs_unwrap is also the beginning of the 3D view's U menu (VIEW3D_MT_uv_map).
+FIRST = ("IMAGE_MT_uvs_unwrap",)
+# Cones are next to seams.
 ENTRIES = (
-    ("IMAGE_MT_uvs_unwrap", draw_unwrap),
     ("IMAGE_MT_uvs", draw_submenu),
     ("VIEW3D_MT_object", draw_submenu),
     ("VIEW3D_MT_object_convert", draw_remesh),
@@ -119,10 +124,14 @@ ENTRIES = (
 
 
 def append() -> None:
+    for menu in FIRST:
+        getattr(bpy.types, menu).prepend(draw_unwrap)
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).append(draw)
 
 
 def remove() -> None:
+    for menu in FIRST:
+        getattr(bpy.types, menu).remove(draw_unwrap)
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).remove(draw)

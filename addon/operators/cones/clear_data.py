@@ -17,8 +17,8 @@ class MESH_OT_cone_clear_data(ConeGroupProperty, bpy.types.Operator):
     bl_idname = identifiers.CLEAR_DATA
     bl_label = "Clear Cone Data"
     bl_description = (
-        "Remove all cones with their angles, measured distortion, previews and reports from the meshes; "
-        "UV maps stay as they are"
+        "Remove all cones with their angles, cut costs, directions, marked edges, measured distortion, previews and "
+        "reports from the meshes; UV maps stay as they are"
     )
     bl_options = {"REGISTER", "UNDO"}
 

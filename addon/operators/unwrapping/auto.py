@@ -150,6 +150,7 @@ class UV_OT_cone_auto_unwrap(
         layout = self.layout
         layout.use_property_split = True
         layout.row().prop(self, "preset", expand=True)
+        layout.prop(self, "cuts")
         if self.preset == "TILE":
             self.draw_tile_size(layout, context)
         else:
@@ -164,7 +165,6 @@ class UV_OT_cone_auto_unwrap(
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
-            body.prop(self, "cuts")
             body.prop(self, "seams")
             body.prop(self, "creases")
             body.prop(self, "straighten")

@@ -209,7 +209,7 @@ def quality_table(
         ("area", f"{d.area:.4f}", "1", f"10 % {d.area_p10:.4f}, 90 % {d.area_p90:.4f}"),
         ("L2 stretch", f"{d.l2_stretch:.4f}", "1", ""),
         ("seam length mismatch", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
-        ("rotation residual", f"{s.rotation_residual:.1e}", "0", "radians"),
+        ("rotation residual", f"{math.degrees(s.rotation_residual):.1e}", "0", "degrees"),
         ("translation residual", f"{s.translation_residual:.1e}", "0", "of the layout"),
     ]
     flips = ""

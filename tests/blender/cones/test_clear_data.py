@@ -10,13 +10,15 @@ saved_reports = addon.mesh.reports
 
 
 def everything_of_ours(obj):
-    """Cones with angles, a map, its distortion and a preview."""
+    """Cones with angles, cut costs, marked edges, a map, its distortion and a preview."""
     bpy.ops.mesh.cone_place()
+    obj.vertex_groups.new(name="uv_seam_cost").add([1, 2], 1.0, "REPLACE")
+    obj.data.attributes.new("uv_cone_feature", "BOOLEAN", "EDGE").data[0].value = True
     assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
     assert bpy.ops.uv.cone_measure() == {"FINISHED"}
     assert bpy.ops.mesh.cone_preview(gains=True) == {"FINISHED"}
     assert {attribute.name for attribute in obj.data.attributes if attribute.name.startswith("uv_cone_")} == {
-        *["uv_cone_angle", "uv_cone_angle_kind", "uv_cone_log_scale", "uv_cone_gain"],
+        *["uv_cone_angle", "uv_cone_angle_kind", "uv_cone_log_scale", "uv_cone_gain", "uv_cone_feature"],
         *["uv_cone_distortion_conformal", "uv_cone_distortion_area", "uv_cone_distortion_stretch"],
     }
 

@@ -41,6 +41,8 @@ class RecordingLayout:
     class Entry:
         clear = None
 
+    operator_context = "EXEC_REGION_WIN"
+
     def __init__(self):
         self.drawn = []
 
@@ -137,9 +139,15 @@ def test_the_menu_of_angles_has_their_operators():
     assert names == [f"mesh.cone_{verb}" for verb in ("set_angle", "spread_rest", "snap_angles", "suggest", "preview")]
 
 
-def test_the_unwrap_menu_which_is_part_of_u_has_auto_unwrap_and_the_submenu():
+def test_the_unwrap_menu_with_which_u_begins_has_auto_unwrap_and_the_submenu_at_its_top():
     assert our_entries("IMAGE_MT_uvs_unwrap") == [("uv.cone_auto_unwrap", None), SUBMENU]
     assert our_entries("VIEW3D_MT_uv_map") == []
+    first, *others = bpy.types.IMAGE_MT_uvs_unwrap._dyn_ui_initialize()
+    assert first.__module__.startswith(EXTENSION) and others
+    stand_in = type("Menu", (), {"layout": RecordingLayout()})()
+    first(stand_in, bpy.context)
+    # What Blender draws next runs as before.
+    assert stand_in.layout.operator_context == "EXEC_REGION_WIN"
 
 
 def test_context_menu_has_cones_in_vertex_select_mode_only():

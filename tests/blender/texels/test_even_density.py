@@ -74,6 +74,7 @@ MODELS = {
     "text": first_press_models.text,
     "screw": screw,
     "kit": kit,
+    "kit of thirty": first_press_models.kit,
     "scaled objects": scaled,
 }
 # In every Blender: what Mirror and Subdivision Surface make.

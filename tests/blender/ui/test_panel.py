@@ -49,22 +49,23 @@ class RecordingLayout:
         self.drawn[name] = self.active
 
 
-def our_properties():
+def our_properties(operator=bpy.ops.uv.cone_unwrap):
     """The operator's properties but those that every operator has."""
     common = {"rna_type", "bl_idname", "bl_label"}
-    return [p for p in bpy.ops.uv.cone_unwrap.get_rna_type().properties if p.identifier not in common]
+    return [p for p in operator.get_rna_type().properties if p.identifier not in common]
 
 
-def panel(is_open=True, **options):
+def panel(is_open=True, operator=bpy.ops.uv.cone_unwrap, **options):
     """Names of the properties drawn with these options; True where they can be changed.
 
     is_open: whether all parts are open, or those that are at first.
     """
     add_cone_cube()
-    ours = [cls for cls in bpy.types.UV_OT_cone_unwrap.__mro__ if cls.__module__.startswith(EXTENSION)]
+    cls = getattr(bpy.types, operator.get_rna_type().identifier)
+    ours = [cls for cls in cls.__mro__ if cls.__module__.startswith(EXTENSION)]
     functions = {name: f for cls in reversed(ours) for name, f in vars(cls).items() if inspect.isfunction(f)}
     stand_in = type("Operator", (), functions)()
-    values = {prop.identifier: prop.default for prop in our_properties()} | options
+    values = {prop.identifier: prop.default for prop in our_properties(operator)} | options
     for name, value in values.items():
         setattr(stand_in, name, value)
     stand_in.layout = RecordingLayout({}, is_open=is_open)
@@ -121,6 +122,17 @@ def test_margins_are_drawn_where_blenders_packer_is_used():
 def test_a_beginner_sees_few_properties_and_the_rest_is_closed():
     closed = panel(is_open=False)
     assert set(closed) == {"mode", "overlaps", "seamless"}
+
+
+def test_of_auto_unwrap_a_beginner_sees_the_preset_cuts_and_the_square():
+    def at_first(**options):
+        return set(panel(False, bpy.ops.uv.cone_auto_unwrap, **options))
+
+    always = {"preset", "cuts", "direction"}
+    square = {"texture_size", "margin", "scale", "udim"}
+    assert at_first() == at_first(preset="BAKE") == always | square | {"stack"}
+    assert at_first(scale="DENSITY") == always | square | {"density"}
+    assert at_first(preset="TILE") == always | {"tile_fit"}
 
 
 def test_without_panels_in_a_popup_all_properties_are_drawn(monkeypatch):
