@@ -323,6 +323,7 @@ AppendCell cells_of(const py::array& column) {
 py::bytes format_table(const std::vector<py::array>& columns) {
   constexpr std::size_t usual_width = 12;
   std::vector<AppendCell> cells;
+  cells.reserve(columns.size());
   for (const py::array& column : columns) cells.push_back(cells_of(column));
   const py::ssize_t count = columns.front().size();
   std::string out;
