@@ -131,7 +131,7 @@ def extruded(profile: list[str], depth: int) -> Mesh:
 
 
 FULLER = {
-    "stairs": (extruded(["x...", "xx..", "xxx.", "xxxx"], 6), True),
+    "stairs": (extruded(["x...", "xx..", "xxx.", "xxxx"], 6), False),  # one island covers enough
     "angle": (extruded(["xxx", "x..", "x.."], 1), True),
     "channel": (extruded(["xxx", "x.x", "x.x"], 8), False),
     "block": (extruded(["x"], 2), False),
