@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import bmesh
 import bpy
 
 from ..core import identifiers
@@ -35,16 +34,7 @@ def clear_data(obj: bpy.types.Object, group_name: str) -> bool:
 
 
 def _remove_attributes(mesh: bpy.types.Mesh) -> bool:
-    if not mesh.is_editmode:
-        present = [name for name in ATTRIBUTES if name in mesh.attributes]
-        for name in present:
-            mesh.attributes.remove(mesh.attributes[name])
-        return bool(present)
-    bm = bmesh.from_edit_mesh(mesh)
-    present = False
-    for kind in (bm.verts.layers.float, bm.verts.layers.int, bm.edges.layers.bool, bm.faces.layers.float_vector):
-        for name in ATTRIBUTES:
-            if (layer := kind.get(name)) is not None:
-                kind.remove(layer)
-                present = True
-    return present
+    present = [name for name in ATTRIBUTES if name in mesh.attributes]
+    for name in present:
+        mesh.attributes.remove(mesh.attributes[name])
+    return bool(present)
