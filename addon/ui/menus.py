@@ -110,8 +110,6 @@ def draw_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
         draw_submenu(self, context)
 
 
-# Where Auto Unwrap comes first; IMAGE_MT_uvs_unwrap is also the beginning of the 3D view's U menu (VIEW3D_MT_uv_map).
-FIRST = ("IMAGE_MT_uvs_unwrap",)
 # Cones are next to seams.
 ENTRIES = (
     ("IMAGE_MT_uvs", draw_submenu),
@@ -124,14 +122,13 @@ ENTRIES = (
 
 
 def append() -> None:
-    for menu in FIRST:
-        getattr(bpy.types, menu).prepend(draw_unwrap)
+    # Auto Unwrap comes first: this menu is also the beginning of the 3D view's U menu (VIEW3D_MT_uv_map).
+    bpy.types.IMAGE_MT_uvs_unwrap.prepend(draw_unwrap)
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).append(draw)
 
 
 def remove() -> None:
-    for menu in FIRST:
-        getattr(bpy.types, menu).remove(draw_unwrap)
+    bpy.types.IMAGE_MT_uvs_unwrap.remove(draw_unwrap)
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).remove(draw)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_text.hpp"
 
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
@@ -19,14 +18,12 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
+
 namespace py = pybind11;
 
 namespace {
 
-using Places = py::array_t<std::int64_t, py::array::c_style>;
-using Vertices = py::array_t<std::int32_t, py::array::c_style>;
-using Numbers = py::array_t<double, py::array::c_style>;
-using Marks = py::array_t<bool, py::array::c_style>;
 // What split_rows returns.
 using TokenRows = py::typing::Tuple<Places, Places, Places, Places>;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "polygons.hpp"
 
-#include <pybind11/numpy.h>
 #include <pybind11/typing.h>
 
 #include <Eigen/Core>
@@ -16,21 +15,37 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
+
 namespace py = pybind11;
 
 namespace {
 
-using Places = py::array_t<std::int64_t, py::array::c_style>;
-using Vertices = py::array_t<std::int32_t, py::array::c_style>;
-using Numbers = py::array_t<double, py::array::c_style>;
-using Marks = py::array_t<bool, py::array::c_style>;
+// Calls visit(lower, begin, end) for every vertex with the items of which it is the lower vertex, sorted, as iterators.
+// for_each_item: calls its argument with the lower vertex of each item, and the item.
+template <typename Item, typename ForEachItem, typename Visit>
+void visit_by_lower(std::int32_t vertex_count, const ForEachItem& for_each_item, const Visit& visit) {
+  // Counted into a bucket for each lower vertex; those have few each.
+  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for_each_item([&](std::int32_t lower, const Item&) { ++ends[static_cast<std::size_t>(lower) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Item> items(ends.back());
+  for_each_item([&](std::int32_t lower, const Item& item) { items[ends[static_cast<std::size_t>(lower)]++] = item; });
+  auto begin = items.begin();
+  for (std::int32_t lower = 0; lower < vertex_count; ++lower) {
+    const auto end = items.begin() + static_cast<std::ptrdiff_t>(ends[static_cast<std::size_t>(lower)]);
+    std::sort(begin, end);
+    visit(lower, begin, end);
+    begin = end;
+  }
+}
 
 // The edges of polygons, each once, the smaller vertex first, in order, (e, 2).  corners: (c) vertices below
 // vertex_count, polygon after polygon.  sizes: (f) corners of each.
 Vertices polygon_edges(const Vertices& corners, const Places& sizes, std::int32_t vertex_count) {
   const auto vertex = corners.unchecked<1>();
   const auto size = sizes.unchecked<1>();
-  const auto for_each_edge = [&](auto visit) {
+  const auto for_each_edge = [&](const auto& visit) {
     py::ssize_t begin = 0;
     for (py::ssize_t f = 0; f < size.shape(0); begin += size(f++)) {
       std::int32_t before = size(f) > 0 ? vertex(begin + size(f) - 1) : 0;
@@ -40,23 +55,11 @@ Vertices polygon_edges(const Vertices& corners, const Places& sizes, std::int32_
       }
     }
   };
-  // Counted into a bucket for each lower vertex; those have few edges each.
-  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for_each_edge([&](std::int32_t low, std::int32_t) { ++ends[static_cast<std::size_t>(low) + 1]; });
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<std::int32_t> higher(ends.back());
-  for_each_edge([&](std::int32_t low, std::int32_t high) { higher[ends[static_cast<std::size_t>(low)]++] = high; });
   std::vector<std::int32_t> edges;
-  edges.reserve(higher.size());
-  std::size_t begin = 0;
-  for (std::int32_t low = 0; low < vertex_count; ++low) {
-    const std::size_t end = ends[static_cast<std::size_t>(low)];
-    const auto first = higher.begin() + static_cast<std::ptrdiff_t>(begin),
-               last = higher.begin() + static_cast<std::ptrdiff_t>(end);
-    std::sort(first, last);
+  edges.reserve(static_cast<std::size_t>(vertex.shape(0)));
+  visit_by_lower<std::int32_t>(vertex_count, for_each_edge, [&](std::int32_t low, auto first, auto last) {
     std::for_each(first, std::unique(first, last), [&](std::int32_t high) { edges.insert(edges.end(), {low, high}); });
-    begin = end;
-  }
+  });
   return Vertices({static_cast<py::ssize_t>(edges.size() / 2), py::ssize_t{2}}, edges.data());
 }
 
@@ -110,6 +113,7 @@ Places doubled_diagonals(const Places& triangles, const Vertices& corners, const
     std::int32_t higher;
     std::int64_t owner;  // of a diagonal
     bool operator<(const Joint& other) const { return higher < other.higher; }
+    bool operator==(const Joint& other) const { return higher == other.higher; }
   };
   const auto corner = triangles.unchecked<2>();
   const auto vertex = corners.unchecked<1>();
@@ -133,25 +137,14 @@ Places doubled_diagonals(const Places& triangles, const Vertices& corners, const
       }
     }
   };
-  // Counted into a bucket for each lower vertex; those have few each.
-  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for_each_joint([&](std::int32_t lower, const Joint&) { ++ends[static_cast<std::size_t>(lower) + 1]; });
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<Joint> joints(ends.back());
-  for_each_joint(
-      [&](std::int32_t lower, const Joint& joint) { joints[ends[static_cast<std::size_t>(lower)]++] = joint; });
   std::vector<std::int64_t> found;
-  std::size_t begin = 0;
-  for (std::int32_t lower = 0; lower < vertex_count; ++lower) {
-    const std::size_t end = ends[static_cast<std::size_t>(lower)];
-    std::sort(joints.begin() + static_cast<std::ptrdiff_t>(begin), joints.begin() + static_cast<std::ptrdiff_t>(end));
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto is_alike = [&](std::size_t other) { return joints[other].higher == joints[i].higher; };
-      const bool is_doubled = (i > begin && is_alike(i - 1)) || (i + 1 < end && is_alike(i + 1));
-      if (is_doubled && joints[i].owner != edge) found.push_back(joints[i].owner);
+  visit_by_lower<Joint>(vertex_count, for_each_joint, [&](std::int32_t, auto begin, auto end) {
+    for (auto joint = begin; joint != end; ++joint) {
+      const bool is_doubled =
+          (joint != begin && *(joint - 1) == *joint) || (joint + 1 != end && *(joint + 1) == *joint);
+      if (is_doubled && joint->owner != edge) found.push_back(joint->owner);
     }
-    begin = end;
-  }
+  });
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return Places(static_cast<py::ssize_t>(found.size()), found.data());

@@ -89,7 +89,7 @@ class TextTables:
 
 def read_text_tables(data: bytes) -> TextTables | None:
     """All rows of a text file that `read_ply` accepts; None of a binary one, and where a list is not as long in all
-    rows or an integer is none of its type."""
+    rows, an integer is none of its type, or an element has no properties."""
     elements, byte_order, begin, line = _read_header(data)
     if byte_order:
         return None
@@ -101,6 +101,15 @@ def read_text_tables(data: bytes) -> TextTables | None:
             return None
         tables.append(table)
     return TextTables(data[:begin], tables)
+
+
+def structured(columns: dict[str, NDArray]) -> NDArray:
+    """A structured array of columns, (n,) or (n, k) each."""
+    count = len(next(iter(columns.values())))
+    out = np.empty(count, [(name, column.dtype, column.shape[1:]) for name, column in columns.items()])
+    for name, column in columns.items():
+        out[name] = column
+    return out
 
 
 def _extras(elements: list[Element]) -> tuple[str, ...]:
@@ -174,7 +183,9 @@ class _TextTable:
         return rows.integers(ranges(begins, counts)), counts
 
     def read_table(self, element: Element) -> NDArray | None:
-        """A structured array of all properties, lists as fields of several numbers."""
+        """A structured array of all properties, lists as fields of several numbers; None as of `read_text_tables`."""
+        if not element.properties:
+            return None  # such rows are empty lines, which are left out
         rows = self._take(element)
         columns = {}
         for place, (begins, counts) in self._cells(element, rows, [*range(len(element.properties))]).items():
@@ -188,10 +199,7 @@ class _TextTable:
                 return None
             width = int(counts[0]) if len(counts) else 0
             columns[p.name.decode()] = typed if p.count_type is None else typed.reshape(len(counts), width)
-        table = np.empty(len(rows.lines), [(name, c.dtype, c.shape[1:]) for name, c in columns.items()])
-        for name, column in columns.items():
-            table[name] = column
-        return table
+        return structured(columns)
 
     def skip(self, element: Element) -> None:
         if element.properties:

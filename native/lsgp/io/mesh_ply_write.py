@@ -19,7 +19,7 @@ from .. import _lsgp
 from ..errors import Finding
 from ..indexed_uv import index_corners
 from .mesh_gltf import unsolved_at_origin
-from .mesh_ply import CORNER_LISTS, read_text_tables
+from .mesh_ply import CORNER_LISTS, read_text_tables, structured
 from .polygons import PolygonMesh
 
 if TYPE_CHECKING:
@@ -62,14 +62,14 @@ def format_ply(
 def _read(source: bytes, mesh: PolygonMesh) -> PlyData:
     from plyfile import PlyData
 
+    size = _common_size(mesh)
+    if size is None:
+        return PlyData.read(io.BytesIO(source))
     text = read_text_tables(source)
     if text is not None:
         header = PlyData.read(io.BytesIO(ROW_COUNT.sub(rb"\g<1>0", text.header)))
         elements = [_element(element, table) for element, table in zip(header.elements, text.tables, strict=True)]
         return PlyData(elements, text=True, comments=header.comments, obj_info=header.obj_info)
-    size = _common_size(mesh)
-    if size is None:
-        return PlyData.read(io.BytesIO(source))
     lengths = {"face": {name.decode(): size for name in CORNER_LISTS}}
     with tempfile.TemporaryFile() as file:  # plyfile takes tables from files only
         file.write(source)
@@ -166,23 +166,14 @@ def _with_old(vertices: NDArray, mesh: PolygonMesh, corner_uv: NDArray[np.float6
 
 def _vertices(element: PlyElement, vertex: NDArray[np.int64], uv: NDArray[np.float64]) -> PlyElement:
     kept = {name: element.data[name][vertex] for name in element.data.dtype.names if name not in UV}
-    return _element(element, _structured(kept | dict(zip(UV, uv.T, strict=True))))
+    return _element(element, structured(kept | dict(zip(UV, uv.T, strict=True))))
 
 
 def _faces(element: PlyElement, mesh: PolygonMesh, corners: NDArray[np.int64]) -> PlyElement:
     columns = {name: element.data[name] for name in element.data.dtype.names if name != WEDGE_UV}
     name = next(name.decode() for name in CORNER_LISTS if name.decode() in columns)
     columns[name] = _lists(mesh, corners)
-    return _element(element, _structured(columns), {name: "i4"})
-
-
-def _structured(columns: dict[str, NDArray]) -> NDArray:
-    """A structured array of columns, (n,) or (n, k) each."""
-    count = len(next(iter(columns.values())))
-    out = np.empty(count, [(name, column.dtype, column.shape[1:]) for name, column in columns.items()])
-    for name, column in columns.items():
-        out[name] = column
-    return out
+    return _element(element, structured(columns), {name: "i4"})
 
 
 def _lists(mesh: PolygonMesh, corners: NDArray[np.int64]) -> NDArray:
@@ -210,8 +201,8 @@ def _bare(mesh: PolygonMesh) -> PlyData:
     """A binary file of nothing but the mesh."""
     from plyfile import PlyData, PlyElement
 
-    vertices = _structured(dict(zip("xyz", mesh.positions.T, strict=True)))
-    faces = _structured({"vertex_indices": _lists(mesh, mesh.corners)})
+    vertices = structured(dict(zip("xyz", mesh.positions.T, strict=True)))
+    faces = structured({"vertex_indices": _lists(mesh, mesh.corners)})
     length = "u1" if mesh.sizes.max(initial=0) < 256 else "i4"
     return PlyData(
         [

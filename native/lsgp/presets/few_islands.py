@@ -11,7 +11,7 @@ from ..options import Options
 from ..results import Result
 from ..surface import Surface
 from .components import Components
-from .map_comparison import can_be_packed, is_as_good, island_count, measure_of_filling
+from .map_comparison import ISLANDS_FOR_ONE, can_be_packed, is_as_good, island_count, measure_of_filling
 
 MakeDivided = Callable[[Options], Result | None]
 
@@ -19,7 +19,6 @@ MakeDivided = Callable[[Options], Result | None]
 # counts for no island.
 _MORE_FOR_ONE = 1.2
 _WELL_FILLED = 0.53
-_ISLANDS_FOR_ONE = 10
 # Islands are divided as if they had such a part of the square: less of it, and only what saves most is cut.
 _SHARES = (0.25, 0.5, 1.0, 2.0)
 
@@ -68,7 +67,7 @@ def _may_gain(best_worth: float, fewest: int, islands: int) -> bool:
 
 def _further(fewest: int) -> float:
     """How many further islands count as one."""
-    return max(1.0, fewest / _ISLANDS_FOR_ONE)
+    return max(1.0, fewest / ISLANDS_FOR_ONE)
 
 
 def _as_good(divided: Result | None, usual: Result) -> Result | None:

@@ -36,7 +36,7 @@ _FAR_FEWER_CUTS = 0.6
 _ISOMETRIC_L2 = 1.001
 _TARGET_L2 = 1.05
 _LEAST_FILLED_FOR_CUTS = 0.75
-_ISLANDS_FOR_ONE = 10
+ISLANDS_FOR_ONE = 10
 # More of the square than this is rarely filled.
 WELL_FILLED = 0.6
 # Where islands need not be few, those of small meshes are divided otherwise up to here, as that often fills a tenth
@@ -80,7 +80,7 @@ def may_replace_map(
     """
     islands = island_count(usual)
     more = island_count(symmetric) - islands
-    has_few = islands < _ISLANDS_FOR_ONE
+    has_few = islands < ISLANDS_FOR_ONE
     saves_cuts = _saves_many_cuts(symmetric, usual)
     most_l2 = _MOST_L2 * usual.distortion.l2_stretch
     if saves_cuts:
@@ -90,7 +90,7 @@ def may_replace_map(
         and defects(symmetric) <= defects(usual)
         and symmetric.distortion.l2_stretch <= most_l2
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
-        and more <= (_PAIR if has_few else islands // _ISLANDS_FOR_ONE)
+        and more <= (_PAIR if has_few else islands // ISLANDS_FOR_ONE)
     ):
         return False
     filled = measure_of_filling(usual, square_share, progress, turned="quarters")
@@ -102,7 +102,7 @@ def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
     if more <= -worthwhile(usual):
         return _LEAST_FILLED_BY_FEWER
     least = _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
-    if island_count(usual) >= _ISLANDS_FOR_ONE or more not in (_PAIR, -1):
+    if island_count(usual) >= ISLANDS_FOR_ONE or more not in (_PAIR, -1):
         return least
     return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
 
@@ -278,7 +278,7 @@ def defects(result: Result) -> int:
 
 def worthwhile(usual: Result) -> int:
     """How many islands fewer are worth a less full square, or cuts that are not symmetric."""
-    return max(_PAIR, island_count(usual) // _ISLANDS_FOR_ONE)
+    return max(_PAIR, island_count(usual) // ISLANDS_FOR_ONE)
 
 
 def island_count(result: Result) -> int:

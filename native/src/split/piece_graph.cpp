@@ -198,6 +198,21 @@ Array<char> open_paths(const PieceGraph& graph, const Array<char>& in_tree) {
   return open;
 }
 
+double cost_of_cuts(const PieceGraph& graph, const Array<char>& open) {
+  double out = 0;
+  for (std::size_t p = 0; p < open.size(); ++p) out += open[p] ? graph.paths[p].cost : 0;
+  return out;
+}
+
+PerHalfedge<char> cuts_along(const PieceGraph& graph, const HalfedgeMesh& mesh, const Array<char>& open) {
+  PerHalfedge<char> out(mesh.halfedge_count(), 0);
+  for (std::size_t p = 0; p < open.size(); ++p) {
+    if (!open[p]) continue;
+    for (const Index h : graph.paths[p].halfedges) out[h] = out[mesh.twin[h]] = 1;
+  }
+  return out;
+}
+
 void price_paths(const MetricMesh& costs, PieceGraph& graph) {
   for (PieceGraph::Path& path : graph.paths) {
     path.cost = 0;

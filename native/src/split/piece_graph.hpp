@@ -46,6 +46,9 @@ PerPart<Array<Index>> paths_of_pieces(const PieceGraph& graph);
 // All paths outside a spanning forest, except dead ends: at a node that needs no cut, a last open path is closed as
 // well.  in_tree, return: (paths) 0 or 1.
 Array<char> open_paths(const PieceGraph& graph, const Array<char>& in_tree);
+// Of the open paths, (paths) 0 or 1: the cost of cuts along them, and their halfedges, on both sides.
+double cost_of_cuts(const PieceGraph& graph, const Array<char>& open);
+PerHalfedge<char> cuts_along(const PieceGraph& graph, const HalfedgeMesh& mesh, const Array<char>& open);
 
 // costs: the surface, with those of cuts.
 void price_paths(const MetricMesh& costs, PieceGraph& graph);

@@ -126,12 +126,7 @@ void Recutter::span() {
   }
 }
 
-double Recutter::cost_of(const Array<char>& in_tree) const {
-  const Array<char> open = open_paths(graph_, in_tree);
-  double out = 0;
-  for (std::size_t p = 0; p < open.size(); ++p) out += open[p] ? graph_.paths[p].cost : 0;
-  return out;
-}
+double Recutter::cost_of(const Array<char>& in_tree) const { return cost_of_cuts(graph_, open_paths(graph_, in_tree)); }
 
 // The pieces connected to a seed, which is the first, when a path of the tree is opened; if that is `none`, the whole
 // island.
@@ -274,13 +269,7 @@ Array<Recutter::State> Recutter::search() {
 }
 
 PerHalfedge<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state) const {
-  PerHalfedge<char> out(mesh.halfedge_count(), 0);
-  const Array<char> open = open_paths(graph_, state.in_tree);
-  for (std::size_t p = 0; p < open.size(); ++p) {
-    if (!open[p]) continue;
-    for (const Index h : graph_.paths[p].halfedges) out[h] = out[mesh.twin[h]] = 1;
-  }
-  return out;
+  return cuts_along(graph_, mesh, open_paths(graph_, state.in_tree));
 }
 
 }  // namespace

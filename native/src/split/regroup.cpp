@@ -63,8 +63,8 @@ class Regrouper {
   // Returns whether anything has changed.
   bool improve(Regrouping steps);
 
-  PerHalfedge<char> cuts() const { return on_halfedges(now_.open); }  // on both sides
-  Array<Index> required_cuts() const;                                 // one halfedge of each edge
+  PerHalfedge<char> cuts() const { return cuts_along(graph_, mesh_, now_.open); }  // on both sides
+  Array<Index> required_cuts() const;                                              // one halfedge of each edge
   const PerPart<Motion>& motion() const { return now_.motion; }
   const PerTriangle<Index>& piece_of() const { return graph_.piece_of; }
 
@@ -107,7 +107,6 @@ class Regrouper {
   bool exchange();
   bool settle();
   bool make_detours();
-  PerHalfedge<char> on_halfedges(const Array<char>& open) const;
   bool is_spent() const { return operations_ >= most_operations; }
   void spend(double operations) {
     operations_ += operations;
@@ -182,11 +181,7 @@ void Regrouper::span(State& state) const {
 }
 
 // Relative to the square root of the area.
-double Regrouper::cost_of(const Array<char>& open) const {
-  double out = 0;
-  for (std::size_t p = 0; p < open.size(); ++p) out += open[p] ? graph_.paths[p].cost : 0;
-  return out / root_area_;
-}
+double Regrouper::cost_of(const Array<char>& open) const { return cost_of_cuts(graph_, open) / root_area_; }
 
 double Regrouper::score_of(const State& state) const {
   PerPart<double> area(state.islands, 0);
@@ -440,15 +435,6 @@ bool Regrouper::improve(Regrouping steps) {
   return has_changed;
 }
 
-PerHalfedge<char> Regrouper::on_halfedges(const Array<char>& open) const {
-  PerHalfedge<char> out(mesh_.halfedge_count(), 0);
-  for (std::size_t p = 0; p < open.size(); ++p) {
-    if (!open[p]) continue;
-    for (const Index h : graph_.paths[p].halfedges) out[h] = out[mesh_.twin[h]] = 1;
-  }
-  return out;
-}
-
 // What is left if islands are connected, whether they then overlap or not, along the paths that cost most.
 Array<Index> Regrouper::required_cuts() const {
   Array<std::pair<double, Index>> order;
@@ -463,7 +449,7 @@ Array<Index> Regrouper::required_cuts() const {
     islands.unite(a, b);
     in_tree[p] = 1;
   }
-  const PerHalfedge<char> is_cut = on_halfedges(open_paths(graph_, in_tree));
+  const PerHalfedge<char> is_cut = cuts_along(graph_, mesh_, open_paths(graph_, in_tree));
   Array<Index> out;
   for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
     if (is_cut[h] && h < mesh_.twin[h]) out.push_back(h);

@@ -94,6 +94,32 @@ end_header
     assert (stored == file.triangulation.to_polygon_corners(uv, len(corners))).all()
 
 
+def test_elements_without_properties_take_no_rows_of_others(tmp_path: Path) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    positions, faces = cube(1)
+    header = f"""ply
+format ascii 1.0
+element vertex {len(positions)}
+property float x
+property float y
+property float z
+element nothing 2
+element face {len(faces)}
+property list uchar int vertex_indices
+element edge 2
+property int vertex1
+end_header
+"""
+    rows = [f"{x} {y} {z}" for x, y, z in positions] + ["", ""]
+    rows += [f"4 {' '.join(map(str, face))}" for face in faces] + ["5", "7"]
+    (tmp_path / "in.ply").write_text(header + "\n".join(rows) + "\n")
+    file = read_mesh_file(tmp_path / "in.ply")
+    assert write_mesh_file(tmp_path / "out.ply", file, split_uv(file)) == []
+    found = plyfile.PlyData.read(tmp_path / "out.ply")
+    assert found["edge"]["vertex1"].tolist() == [5, 7]
+    assert len(found["face"].data) == len(faces) and found["nothing"].count == 2
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_a_binary_ply_of_equal_polygons_keeps_numbers_around_its_lists(tmp_path: Path, order: str) -> None:
     plyfile = pytest.importorskip("plyfile")
