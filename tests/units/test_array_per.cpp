@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "cut/cut_mesh.hpp"
+#include "division/face_graph.hpp"
 #include "mesh/per_element.hpp"
-#include "split/face_graph.hpp"
 
 namespace {
 

@@ -12,12 +12,12 @@
 #include "assembly/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
+#include "division/compact_islands.hpp"
 #include "pipeline/straightening.hpp"
 #include "plane/overlaps.hpp"
 #include "plane/predicates.hpp"
 #include "repair/straight_sides.hpp"
 #include "seamless/exact_layout.hpp"
-#include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
 #include "unfold/jacobians.hpp"
 

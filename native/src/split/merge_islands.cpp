@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "division/part_borders.hpp"
 #include "plane/boundary_polygon.hpp"
-#include "split/part_borders.hpp"
 
 namespace lsgp {
 

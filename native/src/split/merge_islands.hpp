@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "division/part_borders.hpp"
 #include "pipeline/component_map.hpp"
-#include "split/part_borders.hpp"
 
 namespace lsgp {
 

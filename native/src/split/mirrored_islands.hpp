@@ -7,9 +7,9 @@
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
 #include "cut/cut_graph.hpp"
+#include "division/part_borders.hpp"
 #include "mesh/mirror.hpp"
 #include "mesh/point_tree.hpp"
-#include "split/part_borders.hpp"
 
 namespace lsgp {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "base/array.hpp"
+#include "division/face_graph.hpp"
 #include "plane/overlaps.hpp"
-#include "split/face_graph.hpp"
 
 namespace lsgp {
 

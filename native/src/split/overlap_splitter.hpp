@@ -6,7 +6,7 @@
 
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
-#include "split/minimum_cut.hpp"
+#include "division/minimum_cut.hpp"
 #include "split/overlap_pairs.hpp"
 
 namespace lsgp {

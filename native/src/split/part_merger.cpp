@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/checkpoint.hpp"
-#include "split/straight_cuts.hpp"
+#include "division/straight_cuts.hpp"
 
 namespace lsgp {
 

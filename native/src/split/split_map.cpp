@@ -8,13 +8,13 @@
 #include <optional>
 #include <utility>
 
+#include "division/cut_apart.hpp"
+#include "pieces/division_price.hpp"
+#include "pieces/recut.hpp"
+#include "pieces/regroup.hpp"
 #include "plane/convex_hull.hpp"
-#include "split/cut_apart.hpp"
-#include "split/division_price.hpp"
 #include "split/merge_islands.hpp"
 #include "split/mirrored_islands.hpp"
-#include "split/recut.hpp"
-#include "split/regroup.hpp"
 #include "split/split_overlaps.hpp"
 
 namespace lsgp {

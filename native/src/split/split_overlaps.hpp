@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "base/array.hpp"
+#include "division/face_graph.hpp"
+#include "division/minimum_cut.hpp"
 #include "plane/overlaps.hpp"
-#include "split/face_graph.hpp"
-#include "split/minimum_cut.hpp"
 
 namespace lsgp {
 

@@ -359,20 +359,20 @@ REVIEWED = {
         ("while (column < entry.column)", "columns, each once", SHORT),
         ("while (column < size_)", "columns, each once", SHORT),
     ],
-    "split/candidate_cuts.cpp": [
+    "pieces/candidate_cuts.cpp": [
         (
             "for (Index by = reached[end].by; by != none && !out[by]; by = reached[mesh.origin(by)].by)",
             LINKED,
             SHORT,
         ),
     ],
-    "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
+    "division/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
     "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
     "split/mirrored_islands.cpp": [
         ("while (!queue.empty() && queue.top().second != to)", NEAREST, OWN),
         ("for (Index h = at(to).by; h != none; h = at(mesh_.origin(h)).by)", LINKED, SHORT),
     ],
-    "split/minimum_cut.cpp": [
+    "division/minimum_cut.cpp": [
         ("while (!queue.empty())", NEAREST, SHORT),
         ("for (;;)", "each round holds more cells, or ends it", WITHIN),
         (
@@ -392,7 +392,7 @@ REVIEWED = {
         ("while (!borders.empty())", "each round makes two parts one", OWN),
         ("for (auto border = borders.begin(); border != borders.end();)", "erases what it does not step over", SHORT),
     ],
-    "split/piece_graph.cpp": [
+    "pieces/piece_graph.cpp": [
         (
             "for (Index smallest = find_smallest(); smallest != none; smallest = find_smallest())",
             "each round makes two groups one, or one as large as need be",
@@ -404,7 +404,7 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "split/regroup.cpp": [
+    "pieces/regroup.cpp": [
         ("while (join_once())", "each round lowers the score by least_saving", OWN),
         ("while (exchange())", "each round lowers the score by least_saving", OWN),
         (
@@ -418,14 +418,14 @@ REVIEWED = {
             OWN,
         ),
     ],
-    "split/recut.cpp": [
+    "pieces/recut.cpp": [
         (
             "for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried)",
             "all paths in turn, again only after one that lowers the score by least_gain",
             OWN,
         ),
     ],
-    "split/straight_cuts.cpp": [
+    "division/straight_cuts.cpp": [
         ("while (mesh_.twin[g] != none && !open_[g] && !parts_differ(g))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none; h = next_on[h])", LINKED, SHORT),
         ("for (;; g = next(mesh_.twin[g]))", AROUND_A_VERTEX, SHORT),

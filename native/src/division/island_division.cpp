@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/island_division.hpp"
+#include "division/island_division.hpp"
 
 #include <algorithm>
 #include <cmath>

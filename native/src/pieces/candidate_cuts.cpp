@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/candidate_cuts.hpp"
+#include "pieces/candidate_cuts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/division_price.hpp"
+#include "pieces/division_price.hpp"
 
 #include <algorithm>
 #include <cmath>

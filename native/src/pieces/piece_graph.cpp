@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/piece_graph.hpp"
+#include "pieces/piece_graph.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/regroup.hpp"
+#include "pieces/regroup.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
+#include "division/cut_apart.hpp"
+#include "pieces/candidate_cuts.hpp"
+#include "pieces/division_price.hpp"
+#include "pieces/piece_graph.hpp"
 #include "plane/boundary_polygon.hpp"
 #include "plane/coverage_raster.hpp"
-#include "split/candidate_cuts.hpp"
-#include "split/cut_apart.hpp"
-#include "split/division_price.hpp"
-#include "split/piece_graph.hpp"
 
 namespace lsgp {
 

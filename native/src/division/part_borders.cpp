@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/part_borders.hpp"
+#include "division/part_borders.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/array.hpp"
-#include "split/face_graph.hpp"
+#include "division/face_graph.hpp"
 
 namespace lsgp {
 

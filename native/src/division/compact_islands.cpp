@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/compact_islands.hpp"
+#include "division/compact_islands.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "division/cut_apart.hpp"
+#include "division/face_graph.hpp"
+#include "division/island_division.hpp"
+#include "division/minimum_cut.hpp"
+#include "division/straight_cuts.hpp"
 #include "mesh/point_tree.hpp"
 #include "plane/convex_hull.hpp"
-#include "split/cut_apart.hpp"
-#include "split/face_graph.hpp"
-#include "split/island_division.hpp"
-#include "split/minimum_cut.hpp"
-#include "split/straight_cuts.hpp"
 
 namespace lsgp {
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "division/face_graph.hpp"
+#include "division/island_division.hpp"
 #include "mesh/mirror.hpp"
 #include "pipeline/component_map.hpp"
-#include "split/face_graph.hpp"
-#include "split/island_division.hpp"
 
 namespace lsgp {
 

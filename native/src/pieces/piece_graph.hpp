@@ -5,8 +5,8 @@
 #include <complex>
 
 #include "base/array.hpp"
+#include "division/cut_apart.hpp"
 #include "pipeline/component_map.hpp"
-#include "split/cut_apart.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/minimum_cut.hpp"
+#include "division/minimum_cut.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "division/cut_apart.hpp"
 #include "pipeline/component_map.hpp"
-#include "split/cut_apart.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/cut_apart.hpp"
+#include "division/cut_apart.hpp"
 
 #include <utility>
 

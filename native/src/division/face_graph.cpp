@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/face_graph.hpp"
+#include "division/face_graph.hpp"
 
 #include <algorithm>
 #include <cmath>

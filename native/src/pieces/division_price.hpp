@@ -2,7 +2,7 @@
 // What a division of a map costs.
 #pragma once
 
-#include "split/face_graph.hpp"
+#include "division/face_graph.hpp"
 
 namespace lsgp {
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "base/array.hpp"
-#include "split/face_graph.hpp"
+#include "division/face_graph.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/recut.hpp"
+#include "pieces/recut.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "division/cut_apart.hpp"
+#include "pieces/candidate_cuts.hpp"
+#include "pieces/piece_graph.hpp"
 #include "plane/coverage_raster.hpp"
-#include "split/candidate_cuts.hpp"
-#include "split/cut_apart.hpp"
-#include "split/piece_graph.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "split/straight_cuts.hpp"
+#include "division/straight_cuts.hpp"
 
 #include <algorithm>
 #include <cmath>
