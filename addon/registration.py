@@ -27,6 +27,7 @@ from .operators.inspection.measure_distortion import UV_OT_cone_measure
 from .operators.inspection.select_reported import MESH_OT_cone_select_reported
 from .operators.inspection.show_texture import UV_OT_cone_texture
 from .operators.quads.remesh import OBJECT_OT_cone_remesh_to_quads
+from .operators.shared import redo
 from .operators.texels.get_density import UV_OT_cone_texel_get
 from .operators.texels.select_by_density import MESH_OT_cone_texel_select
 from .operators.texels.set_density import UV_OT_cone_texel_set
@@ -77,7 +78,7 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, remembered, manual, presets)
+MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, remembered, redo, manual, presets)
 
 
 def register() -> None:

@@ -75,6 +75,7 @@ TEXEL_GET = "uv.cone_texel_get"
 TEXEL_SET = "uv.cone_texel_set"
 TEXEL_SELECT = "mesh.cone_texel_select"
 CLEAR_DATA = "mesh.cone_clear_data"
+WAIT_FOR_REDO = "uv.cone_wait_for_redo"
 
 COMMAND = "cone_unwrap"
 """Command of Blender's command line."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -15,23 +16,38 @@ from ...core.region import Region
 from ...jobs.tasks.computation import Computation
 from ...jobs.tasks.solving import Progress, Task
 from ...mesh.region_read import Faces, Groups, read_region
-from ...mesh.targets import selects_by_uv, target, target_objects
+from ...mesh.targets import Target, selects_by_uv, target, target_objects
+from . import redo
 from .conclusion import conclude, for_each
 from .polling import ComputingOperator
+from .progress import ShownProgress
 
-# Seconds: faster computations show no progress, which would only flicker; and how often progress is shown.
+# Seconds: faster computations show no progress, which would only flicker.
 UNNOTICED = 0.2
-INTERVAL = 0.05
 
 Solved = list[tuple[bpy.types.Object, Task, Any]]
 """Objects with their tasks and results."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """What a computation in the background is for.
+
+    targets: the objects of the tasks. failures: the errors of other objects by name.
+    """
+
+    targets: list[Target]
+    tasks: list[Task]
+    computation: Computation[list[Any | Exception]]
+    failures: dict[str, Exception]
 
 
 class BackgroundOperator(ComputingOperator):
     """Base of operators that read the selected faces of all target objects, compute, and then write.
 
     Without a window all of it happens in one call. With one, the computation runs in a thread, and nothing else can be
-    done in the window meanwhile; stopped, the operator ends at once and changes nothing.
+    done in the window meanwhile; stopped, the operator ends at once and changes nothing. Redone with other properties,
+    it runs in a thread as well, see `redo`.
     """
 
     activity: str
@@ -66,18 +82,11 @@ class BackgroundOperator(ComputingOperator):
         # Without a window there are no events.
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        gathered, self._failures = self._gather(context)
-        self._targets = [target(obj) for obj, _ in gathered]
-        self._tasks = [task for _, task in gathered]
-        self._computation = Computation(partial(self.solve, self._tasks))
-        if self._computation.finished(UNNOTICED):
-            return self._conclude_computation()
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(INTERVAL, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
-        self._percent = None
-        self._show_progress(context)
+        self._work = self._start(context)
+        if self._work.computation.finished(UNNOTICED):
+            return self._conclude_work(self._work)
+        self._shown = ShownProgress(context, self.activity, self._work.computation)
+        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -86,22 +95,38 @@ class BackgroundOperator(ComputingOperator):
             self.report({"INFO"}, f"{self.activity} was stopped; nothing was changed")
             return {"CANCELLED"}
         if event.type == "TIMER":
-            if self._computation.finished():
-                self._end_progress(context)
-                return self._conclude_computation()
-            self._show_progress(context)
+            if self._work.computation.finished():
+                self._shown.end(context)
+                return self._conclude_work(self._work)
+            self._shown.update(context)
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Also called by Blender where it ends the operator, for example before another file is opened."""
-        self._computation.stop()
-        self._end_progress(context)
+        self._work.computation.stop()
+        self._shown.end(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        if redo.is_redone(self):
+            return self._redo(context)
         gathered, failures = self._gather(context)
         outcomes = self.solve([task for _, task in gathered])
         found = [(obj, task, outcome) for (obj, task), outcome in zip(gathered, outcomes, strict=True)]
         return self._conclude(found, failures)
+
+    def _redo(self, context: bpy.types.Context) -> set[str]:
+        work = redo.take_computed()
+        if work is None:
+            work = self._start(context)
+            if not work.computation.finished(UNNOTICED):
+                redo.wait(self, work.computation, work)
+                return {"CANCELLED"}
+        return self._conclude_work(work)
+
+    def _start(self, context: bpy.types.Context) -> _Work:
+        gathered, failures = self._gather(context)
+        tasks = [task for _, task in gathered]
+        return _Work([target(obj) for obj, _ in gathered], tasks, Computation(partial(self.solve, tasks)), failures)
 
     def _gather(self, context: bpy.types.Context) -> tuple[list[tuple[bpy.types.Object, Task]], dict[str, Exception]]:
         """What is to be computed for each object with selected faces, and the errors of the others by name."""
@@ -118,15 +143,15 @@ class BackgroundOperator(ComputingOperator):
                 findings.keep(obj, None, [failures[obj.name]])
         return [(obj, task) for obj, task in gathered if task is not None], failures
 
-    def _conclude_computation(self) -> set[str]:
+    def _conclude_work(self, work: _Work) -> set[str]:
         """Conclude for the objects that are still as they were."""
-        found = []
-        for kept, task, outcome in zip(self._targets, self._tasks, self._computation.outcome(), strict=True):
+        found, failures = [], dict(work.failures)
+        for kept, task, outcome in zip(work.targets, work.tasks, work.computation.outcome(), strict=True):
             try:
                 found.append((kept.find(), task, outcome))
             except Refused as error:
-                self._failures[kept.name] = error
-        return self._conclude(found, self._failures)
+                failures[kept.name] = error
+        return self._conclude(found, failures)
 
     def _conclude(
         self, outcomes: Iterable[tuple[bpy.types.Object, Task, Any | Exception]], failures: dict[str, Exception]
@@ -151,18 +176,6 @@ class BackgroundOperator(ComputingOperator):
             failures |= {obj.name: error for obj, _, _ in solved}
             solved, done, warnings = [], [], {}
         said = [f"{obj.name}: {text}" for (obj, _, _), text in zip(solved, done, strict=True)]
+        if solved:
+            redo.remember_finished(self)
         return conclude(self, said, warnings, failures)
-
-    # Progress
-
-    def _show_progress(self, context: bpy.types.Context) -> None:
-        percent = int(100 * self._computation.done)
-        if percent != self._percent:
-            self._percent = percent
-            context.window_manager.progress_update(percent)
-            context.workspace.status_text_set(f"{self.activity}... {percent} %, Esc to cancel")
-
-    def _end_progress(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)

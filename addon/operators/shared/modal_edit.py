@@ -10,6 +10,7 @@ import bpy
 
 from .cursor import Cursor
 from .polling import poll_computation, poll_edit_mesh
+from .redo import last_operator
 from .status_bar import Hint, status
 from .views import shows_meshes
 
@@ -44,7 +45,7 @@ class ModalEdit:
         self._cursor.follow(event)
         self._dragging = self._moved = False
         self._refusal = ""
-        self._last_operator = _last_operator(context)
+        self._last_operator = last_operator(context)
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         self._draw(self._objects.begun)
@@ -95,7 +96,7 @@ class ModalEdit:
 
     def _is_intact(self, context: bpy.types.Context) -> bool:
         """Whether no other operator has changed the mesh, as those do that are started from panels and menus."""
-        last = _last_operator(context)
+        last = last_operator(context)
         if last != self._last_operator:
             self._last_operator = last
             self._objects.doubt()
@@ -136,12 +137,6 @@ class ModalEdit:
         for area in _view_areas():
             area.header_text_set(None)
         self._objects.end()
-
-
-def _last_operator(context: bpy.types.Context) -> int:
-    """Identifies the operator that ran last; 0 for none."""
-    operators = context.window_manager.operators
-    return operators[-1].as_pointer() if operators else 0
 
 
 def _view_areas() -> Iterator[bpy.types.Area]:

@@ -9,7 +9,7 @@ import numpy as np
 from first_press_models import default_cube, scan, suzanne
 from mathutils import Vector
 from scenes import UvMap, add_texture, covered_twice
-from windows import DRAWN, choose, click, done, drag, middle, move_to, place_at, press, until
+from windows import DRAWN, choose, click, done, drag, middle, move_to, place_at, press, running, until
 
 SIZE = 512
 # Pixels from the cursor to the last of the presets, as the operator's options are opened.
@@ -45,6 +45,7 @@ def session(make):
     yield DRAWN
     yield from click(np.array(middle()) + BAKE)
     yield from until(lambda: last().preset == "BAKE", 60)
+    yield from until(lambda: not running("UV_OT_cone_wait_for_redo"), 60)
     yield DRAWN
     # Adjusting an operator undoes it first, and there are other objects then.
     obj = bpy.context.object
