@@ -3,6 +3,7 @@
 
 import bpy
 
+from .core.choices import ConeUnwrapPresetDefaults
 from .jobs.batch import command
 from .jobs.layouts import remembered
 from .mesh import changes, distortion, reports, texel_settings, texture
@@ -42,6 +43,7 @@ from .ui.panels import PANELS
 from .ui.preferences import ConeUnwrapPreferences
 
 CLASSES = (
+    ConeUnwrapPresetDefaults,
     ConeUnwrapPreferences,
     MESH_OT_cone_mark,
     MESH_OT_cone_edit,

@@ -30,6 +30,13 @@ DIRECTIONS: Choices = {
     "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
 }
 
+TILE_FITS: Choices = {
+    "AUTO": (None, "Automatic", "The largest tiles that add at most a tenth to the distortion"),
+    "TILES": (None, "Count", "This many tiles along the longer side of the layout, before rounding"),
+    "SIZE": (None, "Size", "Tiles of this size on the surface, before rounding"),
+    "DENSITY": (None, "Texel Density", "Tiles that are a whole texture at this texel density, before rounding"),
+}
+
 
 def enum_items(choices: Choices) -> list[tuple[str, str, str]]:
     """The choices as items of an enum property."""
@@ -46,12 +53,36 @@ class DirectionProperty:
     )
 
 
-class FirstPressProperties(DirectionProperty):
-    """Mix-in: the properties of Auto Unwrap whose defaults are preferences."""
+class TileProperties:
+    """Mix-in: how large the tiles of a seamless layout are."""
 
-    NAMES = ("preset", "texture_size", "margin", "direction")
+    tile_fit: bpy.props.EnumProperty(
+        name="Tile Size", description="How the size of the tiles on the surface is chosen", items=enum_items(TILE_FITS)
+    )
+    tiles: bpy.props.FloatProperty(
+        name="Tile Count",
+        description="Tiles along the longer side of the layout, before rounding",
+        default=16.0,
+        min=1.0,
+        soft_max=256.0,
+        precision=1,
+    )
+    tile_size: bpy.props.FloatProperty(
+        name="Side",
+        description="Side of a tile on the surface, including the object's scale",
+        default=0.25,
+        min=1e-6,
+        soft_min=0.01,
+        soft_max=10.0,
+        precision=3,
+        subtype="DISTANCE",
+        unit="LENGTH",
+    )
 
-    preset: bpy.props.EnumProperty(name="Preset", description="What the UV map is for", items=enum_items(PRESETS))
+
+class TextureProperties:
+    """Mix-in: the texture that islands are for."""
+
     texture_size: bpy.props.EnumProperty(
         name="Texture Size", description="Side of the texture in texels", items=TEXTURE_SIZES, default="1024"
     )
@@ -64,3 +95,22 @@ class FirstPressProperties(DirectionProperty):
         soft_max=64,
         subtype="PIXEL",
     )
+
+
+class PresetProperty:
+    """Mix-in: the preset of Auto Unwrap."""
+
+    preset: bpy.props.EnumProperty(name="Preset", description="What the UV map is for", items=enum_items(PRESETS))
+
+
+OF_TEXTURE = ("texture_size", "margin", "direction")
+DEFAULTS: dict[str, tuple[str, ...]] = {
+    "PAINT": OF_TEXTURE,
+    "TILE": ("tile_fit", "tiles", "tile_size", "texture_size", "direction"),
+    "BAKE": OF_TEXTURE,
+}
+"""The properties of Auto Unwrap whose defaults are preferences, by preset."""
+
+
+class ConeUnwrapPresetDefaults(TileProperties, TextureProperties, DirectionProperty, bpy.types.PropertyGroup):
+    """Those of one preset."""

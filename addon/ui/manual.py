@@ -50,6 +50,7 @@ SETTINGS = {
     "ConeUnwrapTexels": TEXELS,
     "Object.cone_unwrap_density_weight": TEXELS,
     "ConeUnwrapPreferences": "how-to/installing",
+    "ConeUnwrapPresetDefaults": "how-to/installing",
 }
 """Page by class of properties, or by property."""
 

@@ -5,13 +5,13 @@ overlay looks."""
 import bpy
 
 from ..core import native
-from ..core.choices import FirstPressProperties
+from ..core.choices import DEFAULTS, PRESETS, ConeUnwrapPresetDefaults, PresetProperty
 from ..core.cut_kinds import KINDS
 from ..core.identifiers import EXTENSION
 from ..overlay.look import CUT_NAMES, OverlayLook
 
 
-class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPreferences):
+class ConeUnwrapPreferences(PresetProperty, OverlayLook, bpy.types.AddonPreferences):
     bl_idname = EXTENSION
 
     threads: bpy.props.IntProperty(
@@ -24,6 +24,10 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
         soft_max=64,
     )
 
+    paint: bpy.props.PointerProperty(type=ConeUnwrapPresetDefaults)
+    tile: bpy.props.PointerProperty(type=ConeUnwrapPresetDefaults)
+    bake: bpy.props.PointerProperty(type=ConeUnwrapPresetDefaults)
+
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.label(text=native.library_state(), icon="ERROR" if native.PROBLEM else "CHECKMARK")
@@ -35,10 +39,15 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
         layout.separator()
         layout.label(text="Auto Unwrap, until something else is chosen")
         row = layout.row()
-        for name in self.NAMES:
+        row.alignment = "LEFT"
+        row.prop(self, "preset")
+        row = layout.row()
+        for preset, (_, label, _) in PRESETS.items():
             column = row.column()
-            column.label(text=self.bl_rna.properties[name].name)
-            column.prop(self, name, text="")
+            column.label(text=label)
+            # Otherwise the longest names are cut off.
+            column.use_property_split, column.use_property_decorate = True, False
+            self._draw_defaults(column, preset)
         layout.separator()
         split = layout.row()
         for heading, names in (
@@ -58,3 +67,12 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
         row = layout.row(align=True)
         for name in CUT_NAMES:
             row.prop(self, name, text="")
+
+    def _draw_defaults(self, layout: bpy.types.UILayout, preset: str) -> None:
+        """Those of a preset, as far as they have an effect."""
+        of_preset = getattr(self, preset.lower())
+        of_tiles = {"TILES": "tiles", "SIZE": "tile_size", "DENSITY": "texture_size"}
+        without = set(of_tiles.values()) - {of_tiles.get(of_preset.tile_fit)} if preset == "TILE" else set()
+        for name in DEFAULTS[preset]:
+            if name not in without:
+                layout.prop(of_preset, name)

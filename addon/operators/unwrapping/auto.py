@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...core import identifiers, native
-from ...core.choices import PRESETS, Choices, FirstPressProperties, enum_items
+from ...core.choices import (
+    DEFAULTS,
+    PRESETS,
+    Choices,
+    DirectionProperty,
+    PresetProperty,
+    TextureProperties,
+    enum_items,
+)
 from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
@@ -49,15 +58,17 @@ STACKS: Choices = {
     ),
 }
 
-# Values that were last taken from the preferences, by property.
-_taken: dict[str, Any] = {}
+# Not for presets either, where Blender has the option.
+_UNSEEN = {"HIDDEN", "SKIP_PRESET"} if "is_skip_preset" in bpy.types.Property.bl_rna.properties else {"HIDDEN"}
 
 
 class UV_OT_cone_auto_unwrap(
     ConeGroupProperty,
     SeamsProperty,
     CutsProperty,
-    FirstPressProperties,
+    PresetProperty,
+    TextureProperties,
+    DirectionProperty,
     TileSizeProperties,
     FeatureProperties,
     BackgroundOperator,
@@ -131,20 +142,41 @@ class UV_OT_cone_auto_unwrap(
         default=False,
     )
 
+    taken: bpy.props.StringProperty(description="What was taken from the preferences, as JSON", options=_UNSEEN)
+
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if (found := preferences()) is not None:
-            self._take_defaults(found)
+        self._take_defaults(is_redone=False)
         return super().invoke(context, event)
 
-    def _take_defaults(self, defaults: bpy.types.AddonPreferences) -> None:
-        """Take from the preferences what neither the caller says nor the artist chose since Blender was started."""
-        for name in FirstPressProperties.NAMES:
-            given = getattr(defaults, name)
-            said = self.properties.is_property_set(name)
-            chosen = self.properties.is_property_set(name, ghost=False) and getattr(self, name) != _taken.get(name)
-            if not (said or chosen):
-                setattr(self, name, given)
-                _taken[name] = given
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if self.options.is_repeat:
+            self._take_defaults(is_redone=True)
+        return super().execute(context)
+
+    def _take_defaults(self, *, is_redone: bool) -> None:
+        """Take from the preferences what neither the caller says nor the artist chose since Blender was started.
+
+        is_redone: everything is set then, be it by the caller or by the run that is redone, and nothing is taken unless
+            another preset was chosen.
+        """
+        defaults = preferences()
+        taken = json.loads(self.taken or "{}")
+        if defaults is None or (is_redone and taken.get("for") == self.preset):
+            return
+
+        def take(name: str, default: Any) -> None:
+            is_said = not is_redone and self.properties.is_property_set(name)
+            is_chosen = self.properties.is_property_set(name, ghost=False) and getattr(self, name) != taken.get(name)
+            if not (is_said or is_chosen):
+                setattr(self, name, default)
+                taken[name] = getattr(self, name)
+
+        if not is_redone:
+            take("preset", defaults.preset)
+        of_preset = getattr(defaults, self.preset.lower())
+        for name in DEFAULTS[self.preset]:
+            take(name, getattr(of_preset, name))
+        self.taken = json.dumps(taken | {"for": self.preset})
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import native
-from ...core.choices import TEXTURE_SIZES, Choices, enum_items
+from ...core.choices import TEXTURE_SIZES, Choices, TileProperties, enum_items
 from ..shared.density import DensityProperty, density_in_world
 from ..shared.properties import LATTICES, LatticeProperty
 from .sections import section
@@ -14,12 +14,6 @@ from .sections import section
 if TYPE_CHECKING:
     import lsgp
 
-TILE_FITS: Choices = {
-    "AUTO": (None, "Automatic", "The largest tiles that add at most a tenth to the distortion"),
-    "TILES": (None, "Count", "This many tiles along the longer side of the layout, before rounding"),
-    "SIZE": (None, "Size", "Tiles of this size on the surface, before rounding"),
-    "DENSITY": (None, "Texel Density", "Tiles that are a whole texture at this texel density, before rounding"),
-}
 COARSE_GRIDS: Choices = {
     "REFINE": ("refine", "Smaller Tiles", "Take the next smaller tiles that fit"),
     "MERGE": ("merge", "Merge Cones", "Merge cones that are less than a tile apart"),
@@ -27,31 +21,8 @@ COARSE_GRIDS: Choices = {
 }
 
 
-class TileSizeProperties(DensityProperty):
+class TileSizeProperties(DensityProperty, TileProperties):
     """Mix-in: how large the tiles of a seamless layout are.  Needs a property `texture_size`."""
-
-    tile_fit: bpy.props.EnumProperty(
-        name="Tile Size", description="How the size of the tiles on the surface is chosen", items=enum_items(TILE_FITS)
-    )
-    tiles: bpy.props.FloatProperty(
-        name="Tile Count",
-        description="Tiles along the longer side of the layout, before rounding",
-        default=16.0,
-        min=1.0,
-        soft_max=256.0,
-        precision=1,
-    )
-    tile_size: bpy.props.FloatProperty(
-        name="Side",
-        description="Side of a tile on the surface, including the object's scale",
-        default=0.25,
-        min=1e-6,
-        soft_min=0.01,
-        soft_max=10.0,
-        precision=3,
-        subtype="DISTANCE",
-        unit="LENGTH",
-    )
 
     def draw_tile_size(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         """How it is chosen and, where it is given, the number."""

@@ -331,25 +331,62 @@ def pressed(**options):
     """What Auto Unwrap, invoked, was run with."""
     assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, **options) <= {"FINISHED", "RUNNING_MODAL"}
     yield from until(lambda: not running("UV_OT_cone_auto_unwrap"))
-    used = bpy.context.window_manager.operators[-1].properties
-    return tuple(getattr(used, name) for name in PREFERRED)
+    return used()
+
+
+def used():
+    properties = bpy.context.window_manager.operators[-1].properties
+    return tuple(getattr(properties, name) for name in PREFERRED)
+
+
+def redone(**changed):
+    """What Auto Unwrap is run with when these properties are changed in the redo panel."""
+    for name, value in changed.items():
+        setattr(bpy.context.window_manager.operators[-1].properties, name, value)
+    bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from until(lambda: not running("UV_OT_cone_wait_for_redo"))
+    return used()
+
+
+@contextmanager
+def own_preferences():
+    preferences = bpy.context.preferences.addons[addon.core.identifiers.EXTENSION].preferences
+    try:
+        yield preferences
+    finally:
+        for name in ("preset", "paint", "tile", "bake"):
+            preferences.property_unset(name)
 
 
 def test_the_first_press_begins_with_the_preferences_until_the_artist_chooses():
     add_cone_cube()
-    preferences = bpy.context.preferences.addons[addon.core.identifiers.EXTENSION].preferences
-    try:
+    with own_preferences() as preferences:
         assert (yield from pressed()) == ("PAINT", "1024", 4, "AUTO")
-        for name, value in zip(PREFERRED, ("BAKE", "2048", 8, "Z"), strict=True):
-            setattr(preferences, name, value)
+        preferences.preset, preferences.bake.texture_size = "BAKE", "2048"
+        preferences.bake.margin, preferences.bake.direction = 8, "Z"
         # The last run had what the preferences said then; nobody chose it.
         assert (yield from pressed()) == ("BAKE", "2048", 8, "Z")
         assert (yield from pressed(margin=2)) == ("BAKE", "2048", 2, "Z")
-        preferences.margin, preferences.preset = 16, "TILE"
-        assert (yield from pressed()) == ("TILE", "2048", 2, "Z")
-    finally:
-        for name in PREFERRED:
-            preferences.property_unset(name)
+        preferences.preset, preferences.tile.direction = "TILE", "X"
+        preferences.bake.margin = 16
+        assert (yield from pressed()) == ("TILE", "1024", 2, "X")
+        assert (yield from pressed(preset="BAKE")) == ("BAKE", "2048", 2, "Z")
+
+
+def test_a_preset_that_is_chosen_in_the_redo_panel_brings_its_preferences():
+    add_cone_cube()
+    bpy.ops.ed.undo_push(message="before")
+    with own_preferences() as preferences:
+        preferences.paint.margin, preferences.bake.margin, preferences.bake.texture_size = 6, 12, "4096"
+        preferences.tile.tile_fit, preferences.tile.tiles = "TILES", 5.0
+        assert (yield from pressed(texture_size="512")) == ("PAINT", "512", 6, "AUTO")
+        assert (yield from redone(preset="BAKE")) == ("BAKE", "512", 12, "AUTO")
+        # What the artist chose there stays.
+        assert (yield from redone(margin=3)) == ("BAKE", "512", 3, "AUTO")
+        assert (yield from redone(preset="TILE")) == ("TILE", "512", 3, "AUTO")
+        tiles = bpy.context.window_manager.operators[-1].properties
+        assert (tiles.tile_fit, tiles.tiles) == ("TILES", 5.0)
+        assert (yield from redone(preset="PAINT")) == ("PAINT", "512", 3, "AUTO")
 
 
 def test_a_click_on_a_row_turns_the_view_to_a_cone_that_is_out_of_sight():
