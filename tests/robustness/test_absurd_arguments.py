@@ -60,7 +60,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.auto_unwrap,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
-            **{"count": 4, "symmetric": True, "creases": True, "sharp": EDGES[:3], "pins": None},
+            **{"count": 4, "target": 1.05, "symmetric": True, "creases": True, "sharp": EDGES[:3], "pins": None},
             **{"pack": "shelves", "margin": None, "udim": None, "stack": None},
             **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
         },

@@ -14,6 +14,7 @@ from ...core.preferences import chosen_threads
 from ...core.region import Region
 from ...jobs.tasks.placing import PlacementSettings, PlacementTask, place_all, write_placement
 from ...jobs.tasks.summaries import placement_summary
+from ...jobs.tasks.unwrapping import USUAL_TARGET
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -56,7 +57,7 @@ class MESH_OT_cone_place(
     target: bpy.props.FloatProperty(
         name="Stretch",
         description="The stretch (L2, 1 is none) not to exceed on any connected component, as far as possible",
-        default=1.05,
+        default=USUAL_TARGET,
         min=1.001,
         soft_max=1.5,
         step=1,

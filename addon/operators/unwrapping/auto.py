@@ -27,7 +27,7 @@ from ...core.text import counted
 from ...jobs.layouts.maps import PackSettings, map_summary, packing_of_preset, stacked_layouts, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
 from ...jobs.tasks.placing import mark_placed
-from ...jobs.tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
+from ...jobs.tasks.unwrapping import USUAL_TARGET, Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -87,6 +87,24 @@ class UV_OT_cone_auto_unwrap(
     activity = "Unwrapping"
     nothing_selected = "No face is selected; select the faces to unwrap"
 
+    count: bpy.props.IntProperty(
+        name="Cones",
+        description="Cones on each connected component that gets some, including those already marked; 0: as few as "
+        "the stretch requires",
+        default=0,
+        min=0,
+        soft_max=64,
+    )
+    target: bpy.props.FloatProperty(
+        name="Stretch",
+        description="The stretch (L2, 1 is none) not to exceed on any connected component, as far as possible; less "
+        "takes more cones, and with them cuts",
+        default=USUAL_TARGET,
+        min=1.001,
+        soft_max=1.5,
+        step=1,
+        precision=3,
+    )
     udim: bpy.props.IntProperty(
         name="UDIM Tiles",
         description="Spread the islands over this many UDIM tiles, 1001 and following, so that they become as large "
@@ -183,6 +201,9 @@ class UV_OT_cone_auto_unwrap(
         layout.use_property_split = True
         layout.row().prop(self, "preset", expand=True)
         layout.prop(self, "cuts")
+        layout.prop(self, "count")
+        if not self.count:
+            layout.prop(self, "target")
         if self.preset == "TILE":
             self.draw_tile_size(layout, context)
         else:
@@ -229,8 +250,15 @@ class UV_OT_cone_auto_unwrap(
             if self.mark:
                 require_attributes(obj.data)
             creases_of = PRESETS[self.preset][0] if self.creases else None
-            task = unwrap_task(region, settings)
-            return replace(task, completes=True, symmetric=self.symmetric, creases_of=creases_of)
+            return replace(
+                unwrap_task(region, settings),
+                completes=True,
+                count=self.count or None,
+                # As it was typed, not in single precision.
+                target=round(self.target, 6),
+                symmetric=self.symmetric,
+                creases_of=creases_of,
+            )
 
         return Groups(settings.cone_group), make_task
 

@@ -22,7 +22,7 @@ from ..options import Options, Seamless
 from ..results import Result
 from ..surface import Pins, Surface
 from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
-from .completed_cones import CompletedCones, GivenCones, or_none
+from .completed_cones import TARGET, CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
 from .cone_choices import best_map, follows_features, possible_cones
 from .map_comparison import fills_badly, may_replace_undivided
@@ -76,6 +76,7 @@ def auto_unwrap(
     preset: Preset = "paint",
     options: Options | None = None,
     count: int | None = None,
+    target: float = TARGET,
     symmetric: bool = True,
     creases: bool = True,
     sharp: ArrayLike | None = None,
@@ -92,7 +93,7 @@ def auto_unwrap(
     cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
-        None: the fewest that bring the L2 stretch to 1.05.
+        None: the fewest that bring the L2 stretch to `target`.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
         as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
@@ -131,7 +132,7 @@ def auto_unwrap(
         arguments.require_type("options", options, Options)
         chosen = options
     arguments.require_callable(progress)
-    given = GivenCones.of(cones, angles, count)
+    given = GivenCones.of(cones, angles, count, target)
     choices = CreaseChoices(surface)
     if arguments.flag("creases", creases):
         choices = crease_choices(surface, given, preset, chosen, sharp)

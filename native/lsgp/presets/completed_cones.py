@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -33,12 +34,14 @@ TARGET = 1.05
 class GivenCones:
     """Cones that are to be completed.
 
-    cones: (k,) int32. angles: one each, None = automatic. count: the number on each component, as of `place_cones`.
+    cones: (k,) int32. angles: one each, None = automatic. count, target: the number on each component, or the stretch
+    that it goes by, as of `place_cones`.
     """
 
     cones: IndexArray
     angles: list[float | None]
     count: int | None = None
+    target: float = TARGET
 
     @classmethod
     def of(
@@ -46,10 +49,16 @@ class GivenCones:
         cones: ArrayLike = (),
         angles: Sequence[float | None] | FloatArray | None = None,
         count: int | None = None,
+        target: float = TARGET,
     ) -> GivenCones:
-        """cones, angles, count: as of `place_cones`.  Raises InputError where there are not as many angles as cones."""
+        """As the arguments of `place_cones`.  Raises InputError where there are not as many angles as cones, or the
+        target is none."""
+        remedy = "pass an L2 stretch, a finite number above 1"
+        stretch = arguments.number("target", target, remedy)
+        if not 1 < stretch < math.inf:
+            arguments.refuse("target", target, remedy)
         given = arguments.index_vector("cones", cones)
-        return cls(given, list(arguments.cone_angles("angles", angles, len(given))), count)
+        return cls(given, list(arguments.cone_angles("angles", angles, len(given))), count, stretch)
 
     @property
     def is_free(self) -> bool:
@@ -62,14 +71,14 @@ class CompletedCones:
     """Given cones and those placed in addition.
 
     cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
-    components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
-    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well.
+    components that needed or were tried for cones; None if there are none. target: the stretch that determined their
+    number; None if that was given. is_symmetric: whether they mirror each other, so that cuts may as well.
     """
 
     cones: IndexArray
     angles: list[float | None]
     placement: Placement | None
-    by_target: bool = True
+    target: float | None = TARGET
     is_symmetric: bool = False
 
     def parameterize(
@@ -93,7 +102,7 @@ class CompletedCones:
             if others.placement is not None:
                 found = joined_warnings(found, _findings_on(others.placement, surface, of_others))
             placement = replace(placement, warnings=found)
-        return CompletedCones(cones, angles, placement, self.by_target, self.is_symmetric)
+        return CompletedCones(cones, angles, placement, self.target, self.is_symmetric)
 
     def told(self, result: Result, options: Options) -> Result:
         """The result of a map through these cones with the applicable warnings of it and of their placement."""
@@ -102,7 +111,7 @@ class CompletedCones:
         if self.placement is None:
             return replace(result, warnings=of_map)
         findings = [_true_of_map(finding, result) for finding in self.placement.warnings]
-        if self.by_target and result.distortion.l2_stretch <= reached_up_to(TARGET, result, options):
+        if self.target and result.distortion.l2_stretch <= reached_up_to(self.target, result, options):
             findings = [finding for finding in findings if finding.code != "PLACEMENT_NOT_REACHED"]
         return replace(result, warnings=joined_warnings(findings, of_map))
 
@@ -131,11 +140,11 @@ def complete_cones(
         triangles = np.sort(np.concatenate([component.triangles for component in components]))
         present = np.unique(np.concatenate([component.cones for component in components]))
         own = Solver(surface_of_triangles(solver.surface, triangles))
-        part = GivenCones(given.cones[present], [given.angles[i] for i in present], given.count)
+        part = GivenCones(given.cones[present], [given.angles[i] for i in present], given.count, given.target)
         placed = or_none(partial(_place, own, part, options, progress))
         if placed is not None:
             return _completed(given, options, replace(placed, warnings=_renumbered(placed.warnings, triangles)))
-    return CompletedCones(given.cones, given.angles, None)
+    return CompletedCones(given.cones, given.angles, None, given.target)
 
 
 def _true_of_map(finding: Finding, result: Result) -> Finding:
@@ -172,7 +181,7 @@ def _place(
         given.cones,
         given.angles,
         count=given.count,
-        target=TARGET,
+        target=given.target,
         lattice=lattice,
         symmetric=symmetric,
         seams=options.seams,
@@ -188,7 +197,8 @@ def _completed(given: GivenCones, options: Options, placed: Placement) -> Comple
     new = placed.cones[~np.isin(placed.cones, given.cones)]
     angles = [angle_at.get(cone, angle) for cone, angle in zip(given.cones.tolist(), given.angles, strict=True)]
     angles += [angle_at.get(cone) for cone in new.tolist()]
-    return CompletedCones(np.concatenate([given.cones, new]), angles, placed, by_target=given.count is None)
+    target = given.target if given.count is None else None
+    return CompletedCones(np.concatenate([given.cones, new]), angles, placed, target)
 
 
 def _renumbered(findings: Sequence[Finding], triangles: NDArray[np.integer]) -> list[Finding]:

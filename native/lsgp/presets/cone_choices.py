@@ -16,7 +16,7 @@ from ..errors import Elements, Finding
 from ..options import Options
 from ..results import Result
 from ..surface import Pins, Surface, surface_arrays
-from .completed_cones import CompletedCones, GivenCones, complete_cones, or_none
+from .completed_cones import TARGET, CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
 from .few_islands import best_of_few
 from .map_comparison import (
@@ -66,7 +66,8 @@ def possible_cones(
     if not (given.is_free and follows_features(solver.surface, options)):
         return _symmetric_cones(solver, given, options, symmetric, progress)
     found = _symmetric_cones(solver, given, options, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES))
-    return replace(found, for_features=feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0)))
+    for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0), given.target)
+    return replace(found, for_features=for_features)
 
 
 def follows_features(surface: Surface, options: Options) -> bool:
@@ -76,14 +77,20 @@ def follows_features(surface: Surface, options: Options) -> bool:
     return is_square and has_features and options.prescription is None and not len(surface.seams)
 
 
-def feature_cones(solver: Solver, options: Options, progress: Progress | None = None) -> CompletedCones | None:
+def feature_cones(
+    solver: Solver, options: Options, progress: Progress | None = None, target: float = TARGET
+) -> CompletedCones | None:
     """Cones with which marked features and, with `Options.straighten`, creases of hard surfaces can run along the
-    lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones."""
+    lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones.
+
+    target: for the others, as of `place_cones`.
+    """
     arrays = surface_arrays(solver.surface)
     chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, _TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
-    return or_none(lambda: complete_cones(solver, GivenCones.of(*chosen), options, share_of(progress, _TRYING, 1.0)))
+    given = GivenCones.of(*chosen, target=target)
+    return or_none(lambda: complete_cones(solver, given, options, share_of(progress, _TRYING, 1.0)))
 
 
 def _symmetric_cones(

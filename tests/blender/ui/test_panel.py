@@ -124,15 +124,17 @@ def test_a_beginner_sees_few_properties_and_the_rest_is_closed():
     assert set(closed) == {"mode", "overlaps", "seamless"}
 
 
-def test_of_auto_unwrap_a_beginner_sees_the_preset_cuts_and_the_square():
+def test_of_auto_unwrap_a_beginner_sees_the_preset_cuts_cones_and_the_square():
     def at_first(**options):
         return set(panel(False, bpy.ops.uv.cone_auto_unwrap, **options))
 
-    always = {"preset", "cuts", "direction"}
+    always = {"preset", "cuts", "count", "direction"}
     square = {"texture_size", "margin", "scale", "udim"}
-    assert at_first() == at_first(preset="BAKE") == always | square | {"stack"}
-    assert at_first(scale="DENSITY") == always | square | {"density"}
-    assert at_first(preset="TILE") == always | {"tile_fit"}
+    assert at_first() == at_first(preset="BAKE") == always | square | {"target", "stack"}
+    assert at_first(scale="DENSITY") == always | square | {"target", "density"}
+    assert at_first(preset="TILE") == always | {"target", "tile_fit"}
+    # A number of cones leaves no choice of the stretch.
+    assert at_first(preset="TILE", count=8) == always | {"tile_fit"}
 
 
 def test_without_panels_in_a_popup_all_properties_are_drawn(monkeypatch):

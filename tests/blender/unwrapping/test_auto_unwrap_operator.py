@@ -450,3 +450,33 @@ def test_a_cylinder_ends_at_its_rims(creases, islands):
     assert covered_twice([uv]) == 0
     if creases:
         assert uv.l2_stretch() == pytest.approx(1, abs=1e-5)
+
+
+def placed(reports, **options):
+    """The number of cones, as reported, and the stretch of the map."""
+    reports()
+    unwrap(creases=False, **options)
+    return int(re.search(r"through (\d+) cones", reports())[1]), UvMap(bpy.context.object).l2_stretch()
+
+
+def test_as_many_cones_are_placed_as_asked_for(reports):
+    add_sphere()
+    assert placed(reports, count=6)[0] == 6
+    assert placed(reports, count=11)[0] == 11
+    assert placed(reports, count=0) == placed(reports)
+
+
+def test_less_stretch_takes_more_cones(reports):
+    add_sphere()
+    (few, most), (usual, _), (many, least) = (placed(reports, target=target) for target in (1.3, 1.05, 1.02))
+    assert few < usual < many
+    assert least < most
+
+
+def test_the_usual_target_is_that_of_the_library(reports):
+    add_sphere()
+    unwrap(creases=False)
+    usual = UvMap(bpy.context.object).uv
+    addon.jobs.layouts.remembered.forget()
+    unwrap(creases=False, target=addon.jobs.tasks.unwrapping.USUAL_TARGET)
+    assert np.array_equal(UvMap(bpy.context.object).uv, usual)

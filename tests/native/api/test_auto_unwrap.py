@@ -137,6 +137,22 @@ def test_count_is_that_of_placing() -> None:
         auto_unwrap(given, count=-1)
 
 
+def test_the_target_determines_how_many_cones_are_placed() -> None:
+    given = surface(meshes.bumpy_sphere(3))
+    maps = [auto_unwrap(given, target=target) for target in (1.01, TARGET, 1.3)]
+    numbers = [len(result.cones) for result in maps]
+    assert numbers[0] > numbers[1] > numbers[2]
+    assert maps[0].distortion.l2_stretch < maps[1].distortion.l2_stretch < maps[2].distortion.l2_stretch <= 1.3
+    assert maps[1] == auto_unwrap(given)
+
+
+@pytest.mark.parametrize("target", [1.0, 0.5, -2, np.nan, np.inf])
+def test_what_is_no_stretch_is_refused_as_a_target_also_where_no_cone_is_placed(target: float) -> None:
+    ball = meshes.bumpy_sphere(2)
+    with pytest.raises(lsgp.InputError, match=r"target is .*L2 stretch"):
+        auto_unwrap(surface(ball), ball.cones, target=target)
+
+
 def test_a_target_that_only_the_conformal_map_misses_is_not_reported() -> None:
     ball, box = surface(meshes.bumpy_sphere(2)), surface(meshes.cube(2))
     missed = lsgp.Finding("PLACEMENT_NOT_REACHED", "The target is not reached.")
