@@ -19,6 +19,7 @@ from ...core.errors import Refused
 from ...core.islands import Islands
 from . import cells
 from .areas import size_in_texels, total_area
+from .cones_between import told_between
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
 from .solving import solve_all
@@ -261,6 +262,8 @@ def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | No
         result = parameterize(imposed.cones, imposed.angles, task.options, pins, progress)
     result = replace(result, warnings=_with_one_stretch(result, task))
     result = replace(result, warnings=_with_size_of_tiles(result, task))
+    between = told_between(region.surface, imposed.cones)
+    result = replace(result, warnings=[*result.warnings, *between])
     uv = result.corner_uv
     step = None if result.seamless is None else cells.step(task.options.seamless)
     if task.keep_placement and step is not None:

@@ -87,6 +87,36 @@ def test_a_vertex_made_between_a_cone_and_another_vertex_is_no_cone():
     assert selected(cube) == [0]
 
 
+def test_cones_that_subdividing_makes_between_cones_are_told_and_can_be_cleared(reports):
+    cube = add_cube(cuts=0)
+    edit(cube)
+    bpy.ops.mesh.cone_mark()
+    bpy.ops.uv.cone_unwrap()
+    assert "in the middle" not in reports()
+    eight = marked(cube)
+    bpy.ops.mesh.subdivide(number_cuts=3)
+    reports()
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert f"{len(marked(cube)) - 8} cones lie in the middle between two others" in reports()
+    assert bpy.ops.mesh.cone_select_reported() == {"FINISHED"}
+    bpy.ops.mesh.cone_mark(clear=True)
+    assert marked(cube) == eight
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert "in the middle" not in reports()
+
+
+def test_cones_around_a_hole_are_not_told_to_be_between_others(reports):
+    def build(bm):
+        bmesh.ops.create_cone(bm, segments=12, radius1=1, radius2=1, depth=1)
+        bm.loops.layers.uv.new("UVMap")
+
+    edit(add_object("Tube", build))
+    bpy.ops.mesh.cone_mark()
+    reports()
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert "in the middle" not in reports()
+
+
 def test_mark_works_on_every_object_in_edit_mode_and_leaves_hidden_vertices():
     first, second = add_cube("First"), add_cube("Second")
     edit(first, second)
