@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 from .cursor import Cursor
+from .gizmos import HiddenGizmos
 from .polling import poll_computation, poll_edit_mesh
 from .redo import last_operator
 from .status_bar import Hint, status
@@ -46,6 +47,7 @@ class ModalEdit:
         self._dragging = self._moved = False
         self._refusal = ""
         self._last_operator = last_operator(context)
+        self._gizmos = HiddenGizmos()
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         self._draw(self._objects.begun)
@@ -131,6 +133,7 @@ class ModalEdit:
 
     def _end(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
+        self._gizmos.end()
         for workspace in bpy.data.workspaces:
             with context.temp_override(workspace=workspace):
                 workspace.status_text_set(None)

@@ -4,13 +4,30 @@
 Run by run_in_window.py; no pytest.
 """
 
+import tempfile
+from pathlib import Path
+
 import bl_ui
 import bpy
 import numpy as np
 from installed import addon
 from mathutils import Quaternion, Vector
 from scenes import ANGLES, UvMap, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
-from windows import area, click, drag, event, move_to, place_of, press, region, running, take_picture, type_text, until
+from windows import (
+    area,
+    click,
+    drag,
+    event,
+    move_to,
+    place_of,
+    press,
+    region,
+    running,
+    take_picture,
+    type_text,
+    until,
+    window,
+)
 
 angle_table = addon.jobs.angles.angle_table
 
@@ -212,6 +229,47 @@ def test_the_navigation_gizmo_turns_the_view():
     assert rotation.rotation_difference(view.view_rotation).angle > 0.1
     assert editing()
     assert (yield from finished()) == cones
+
+
+def gizmos(space):
+    return space.show_gizmo_navigate, space.show_gizmo_tool, space.show_gizmo_context
+
+
+def test_gizmos_of_tools_are_hidden_so_that_clicks_there_are_on_the_model():
+    bpy.ops.wm.tool_set_by_id(name="builtin.move")
+    bpy.ops.screen.area_split(direction="VERTICAL", factor=0.4)
+    other = next(found for found in window().screen.areas if found.type == "VIEW_3D" and found != area())
+    other.spaces.active.show_gizmo_tool = False
+    yield from begin()
+    assert gizmos(area().spaces.active) == gizmos(other.spaces.active) == (True, False, False)
+    cones = marked(ball())
+    # The gizmo of Move would be on the selected vertex.
+    added = in_front(ball(), lambda v: v not in cones)[0]
+    saved = []
+
+    def note(*_):
+        saved.extend(gizmos(view.spaces.active) for view in (area(), other))
+
+    bpy.app.handlers.save_pre.append(note)
+    with tempfile.TemporaryDirectory() as folder:
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder, "saved.blend")), copy=True)
+    bpy.app.handlers.save_pre.remove(note)
+    assert saved == [(True, True, True), (True, False, True)]
+    assert gizmos(area().spaces.active) == (True, False, False) and editing()
+    yield from click(place_of(ball(), added))
+    assert (yield from finished()) == sorted([*cones, added])
+    assert gizmos(area().spaces.active) == (True, True, True)
+    assert gizmos(other.spaces.active) == (True, False, True)
+    yield from begin_again_and_cancel()
+    assert gizmos(area().spaces.active) == (True, True, True)
+
+
+def begin_again_and_cancel():
+    assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield 0.1
+    assert gizmos(area().spaces.active) == (True, False, False)
+    yield from press("ESC")
+    yield from until(lambda: not editing())
 
 
 def test_cones_are_added_in_each_view_of_four():
@@ -548,3 +606,21 @@ def test_cones_are_added_and_dragged_in_the_uv_editor():
     bpy.ops.ed.undo()
     yield 0.2
     assert changed(before, snapshot(ball())) == set()
+
+
+def test_gizmos_of_tools_are_hidden_in_uv_editors_that_have_some():
+    yield from begin()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    other = max((a for a in bpy.context.screen.areas if a.type != "VIEW_3D"), key=lambda a: a.width * a.height)
+    other.ui_type = "UV"
+    yield 0.5
+    for tool, is_shown in (("builtin.select_box", True), ("builtin.move", False)):
+        with bpy.context.temp_override(area=other, region=region("WINDOW", "IMAGE_EDITOR")):
+            bpy.ops.wm.tool_set_by_id(name=tool)
+        assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+        yield 0.1
+        assert other.spaces.active.show_gizmo == is_shown
+        yield from press("ESC")
+        yield from until(lambda: not editing())
+        assert other.spaces.active.show_gizmo
