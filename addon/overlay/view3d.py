@@ -41,7 +41,7 @@ def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
         objects = [obj for obj in context.selected_objects if obj.type == "MESH"]
     else:
         objects = []
-    return [obj for obj in objects if obj.visible_in_viewport_get(context.space_data)]
+    return [obj for obj in objects if obj.visible_get(viewport=context.space_data)]
 
 
 def draw_in_scene() -> None:

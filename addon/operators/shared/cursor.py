@@ -50,7 +50,7 @@ def _sight(view: View) -> Sight:
 
 def _in_scene(view: View, obj: bpy.types.Object) -> Screen | None:
     """None outside a local view, for example."""
-    if not obj.visible_in_viewport_get(view.area.spaces.active):
+    if not obj.visible_get(viewport=view.area.spaces.active):
         return None
     matrix = view.region.data.perspective_matrix @ obj.matrix_world
     return Screen(np.array(matrix, np.float64), view.region.width, view.region.height)
