@@ -13,6 +13,7 @@ from ..base import arguments
 from ..base.arguments import FloatArray
 from ..errors import Elements, InputError
 from ..surface import Surface
+from .extrapolation import extrapolate
 from .texel_raster import (
     ComplexArray,
     Indices,
@@ -54,9 +55,10 @@ def pad_image(
     gutters that are known. Across
     cuts of this library's maps its position is exact; in other maps, sides of different length are matched by a
     similarity. At the boundary of the surface, or where it is mirrored in the map, it is the value of the nearest
-    covered texel. Covered texels and those beyond the margin do not change. If coordinates are squeezed for an image
-    that is not square, as by `correct_aspect`, transitions are those on the image. The argument is not modified;
-    returns an image of its shape and dtype.
+    covered texel; where those around it are close to a plane, their slope is followed, for at most 8 pixels and within
+    the range of the covered texels. Covered texels and those beyond the margin do not change. If coordinates are
+    squeezed for an image that is not square, as by `correct_aspect`, transitions are those on the image. The argument
+    is not modified; returns an image of its shape and dtype.
     Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER, INDEX_OUT_OF_RANGE; ISLANDS_OUTSIDE the unit square,
     as in seamless layouts, in which a texel is at several places of the surface; NO_UV if nothing is mapped.
 
@@ -80,7 +82,11 @@ def pad_image(
     rows[texels[known]] = convert_texels(gutters[known], pixels.dtype)
     rest = texels[~known]
     source = nearest_covered(rest, covered.reshape(shape), math.ceil(reach) + 1)
-    rows[rest[source >= 0]] = rows[source[source >= 0]]
+    rest, source = rest[source >= 0], source[source >= 0]
+    values = extrapolate(out, covered, rest, source)
+    if turns_normals:
+        _keep_lengths(values, rows[source], pixels.dtype)
+    rows[rest] = convert_texels(values, pixels.dtype)
     return out
 
 
@@ -139,9 +145,24 @@ def _sampled(
     return values, known
 
 
+def _keep_lengths(values: FloatArray, others: NDArray[Any], dtype: np.dtype[Any]) -> None:
+    """Make normals as long as others, in place; with two components, at most as long as a unit."""
+    middle = _middle(dtype)
+    normals, lengths = (np.linalg.norm(rows[:, :3] - middle, axis=1) for rows in (values, others.astype(np.float64)))
+    if values.shape[1] == 2:
+        lengths = np.minimum(normals, np.maximum(lengths, middle))
+    changed = (normals != lengths) & (normals > 0)
+    values[changed, :3] = middle + (values[changed, :3] - middle) * (lengths[changed] / normals[changed])[:, None]
+
+
+def _middle(dtype: np.dtype[Any]) -> float:
+    """What stands for 0 in the components of normals."""
+    return float(np.iinfo(dtype).max if dtype.kind == "u" else 1) / 2
+
+
 def _turn_normals(values: FloatArray, turn: ComplexArray, dtype: np.dtype[Any]) -> None:
     """Turn the directions of normals from where they were sampled back to the gutter, in place."""
-    middle = (np.iinfo(dtype).max if dtype.kind == "u" else 1) / 2
+    middle = _middle(dtype)
     # The inverse of the turn in an image, whose y is down, is the turn itself where y is up.
     direction = ((values[:, 0] - middle) + 1j * (values[:, 1] - middle)) * turn
     values[:, 0], values[:, 1] = direction.real + middle, direction.imag + middle

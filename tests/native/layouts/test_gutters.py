@@ -18,7 +18,6 @@ from gutter_checks import (
     unwrapped,
 )
 from map_checks import surface
-from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 SIZE, MARGIN = 256, 8
@@ -106,20 +105,108 @@ def test_a_mirrored_part_is_an_end_of_the_surface() -> None:
     assert (lsgp.pad_image(image, PAIR, PAIR_UV, 4) != lsgp.pad_image(image, apart, PAIR_UV, 4)).any()
 
 
-def test_where_the_surface_ends_gutters_have_the_nearest_covered_texel() -> None:
-    whole = surface(meshes.grid(3, 3))
-    uv = 0.25 + 0.5 * _flat(whole)
-    image, covered = bake(whole, uv, 40)
-    padded = lsgp.pad_image(image, whole, uv, 5)
-    distance = distance_transform_edt(~covered)
-    filled = ~covered & (distance <= 5)
+# A square whose sides lie along texels, (10, 10) to (30, 30) of 40.
+SHEET = surface(meshes.grid(3, 3))
+
+
+def _sheet_uv() -> np.ndarray:
+    return 0.25 + 0.5 * _flat(SHEET)
+
+
+def _on_sheet(image: np.ndarray) -> np.ndarray:
+    """The image where the sheet covers it, else 0."""
+    kept = np.zeros_like(image)
+    kept[10:30, 10:30] = image[10:30, 10:30]
+    return kept
+
+
+def _gutter(width: int) -> np.ndarray:
+    """(40, 40), which texels are beside the sheet, no farther than so many rows and columns."""
+    beside = np.zeros((40, 40), bool)
+    beside[10 - width : 30 + width, 10 - width : 30 + width] = True
+    beside[10:30, 10:30] = False
+    return beside
+
+
+def test_where_the_surface_ends_noise_is_continued_by_the_nearest_covered_texel() -> None:
+    image = _on_sheet(np.random.default_rng(2).random((40, 40)))
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 5)
+    places = np.argwhere(_on_sheet(np.ones((40, 40))) > 0)
+    filled = (padded != 0) & (image == 0)
+    assert filled.sum() > 400
     # Of texels as near as each other either will do.
-    places = np.argwhere(covered)
     for i, j in np.argwhere(filled):
         squares = ((places - (i, j)) ** 2).sum(axis=1)
-        nearest = places[squares == squares.min()]
-        assert padded[i, j] in image[tuple(nearest.T)]
-    assert (padded[distance > 6.5] == 0).all()
+        assert padded[i, j] in image[tuple(places[squares == squares.min()].T)]
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32", "float64"])
+def test_where_the_surface_ends_a_plane_goes_on_for_eight_texels(dtype: str) -> None:
+    rows, columns = np.mgrid[:40, :40]
+    plane = 100 + 2.0 * columns - 3.0 * rows
+    # Channels alike but for their range: in the second, extreme texels leave room for the plane.
+    wide = plane.copy()
+    wide[19:21, 19:21] = [[0, 255], [0, 255]]
+    image = np.stack([_on_sheet(plane), _on_sheet(wide)], axis=2).astype(dtype)
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 12)
+    inside = plane[10:30, 10:30]
+    near = _gutter(5)
+    np.testing.assert_allclose(padded[near, 1], plane[near], atol=1e-3 if dtype[0] == "f" else 0.5)
+    clipped = np.clip(plane, inside.min(), inside.max())
+    np.testing.assert_allclose(padded[near, 0], clipped[near], atol=1e-3 if dtype[0] == "f" else 0.5)
+    # Left of the sheet, texel by texel away from it.
+    left = padded[20, :10, 1].astype(float)[::-1]
+    np.testing.assert_allclose(left[:8], plane[20, 2:10][::-1], atol=0.5)
+    assert left[8] == left[9] == left[7]
+
+
+def test_where_the_surface_ends_edges_in_the_image_do_not_ring() -> None:
+    rows, columns = np.mgrid[:40, :40]
+    image = _on_sheet(np.where((rows // 7 + columns // 7) % 2, 0.8, 0.2))
+    image[12, 12] = 1
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 5)
+    assert set(np.unique(padded)) == {0.0, 0.2, 0.8, 1.0}
+
+
+def test_where_the_surface_ends_lookups_are_nearer_to_the_content_than_with_the_nearest_texel() -> None:
+    rows, columns = np.mgrid[:40, :40]
+    content = 0.5 + 0.2 * np.sin(0.17 * columns + 0.1 * rows) + 0.2 * np.cos(0.13 * rows)
+    image, covered = _on_sheet(content), _on_sheet(np.ones((40, 40))) > 0
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 8)
+    share = np.linspace(0.25, 0.75, 100)
+    ends = np.concatenate(
+        [np.stack([other, share][::turn], axis=1) for turn in (1, -1) for other in (0 * share + 0.25, 0 * share + 0.75)]
+    )
+
+    def error(kind: np.ndarray) -> float:
+        return float(np.abs(lookup(kind, ends) - lookup(content, ends)).mean())
+
+    assert error(padded) < error(smeared(image, covered, 8)) / 3
+
+
+def test_where_the_surface_ends_values_that_are_no_numbers_stay_where_they_are() -> None:
+    rows, columns = np.mgrid[:40, :40]
+    image = _on_sheet(2.0 * columns - rows)
+    image[11, 11], image[28, 28] = np.nan, np.inf
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 5)
+    assert np.isfinite(padded[_gutter(5)]).all()
+
+
+def test_where_the_surface_ends_normals_keep_their_length() -> None:
+    rows, columns = np.mgrid[:40, :40]
+    x, y = 0.03 * (columns - 20.0), 0.02 * (rows - 20.0)
+    normals = np.stack([x, y, np.sqrt(1 - x**2 - y**2)], axis=2)
+    image = _on_sheet(0.5 + 0.5 * normals)
+    padded = lsgp.pad_image(image, SHEET, _sheet_uv(), 5, normal_map=True)
+    gutter = _gutter(3)
+    found = 2 * padded[gutter] - 1
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-9)
+    plain = 2 * lsgp.pad_image(image, SHEET, _sheet_uv(), 5)[gutter] - 1
+    assert np.abs(np.linalg.norm(plain, axis=1) - 1).max() > 1e-3
+    # Two components leave the third to the shader, and are no longer than a unit.
+    steep = _on_sheet(0.5 + 0.5 * np.stack([0.095 * (columns - 20.0), 0 * rows], axis=2))
+    pair = lsgp.pad_image(steep, SHEET, _sheet_uv(), 5, normal_map=True)[gutter]
+    assert np.linalg.norm(2 * pair - 1, axis=1).max() <= 1 + 1e-9
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32", "float64"])
