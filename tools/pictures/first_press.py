@@ -7,8 +7,9 @@
 
 Every model is made by Blender's generators, in the scene of the start, and unwrapped by a single press of *Auto Unwrap*
 with each preset, by *Smart UV Project* and by *Unwrap* with the seams that it has, which are none. OUT/NAME.png shows
-all five, each as the UV editor and the 3D view with a texture; OUT/table.md has their figures. Fails where a map of
-*Auto Unwrap* has flipped faces, overlaps or leaves the square; tiles may do both of the latter.
+all five, each as the UV editor and the 3D view with a texture, above the number of its reports; OUT/table.md has the
+figures and the texts of the reports. Fails where a map of *Auto Unwrap* has flipped faces, overlaps or leaves the
+square, where tiles may do both of the latter, or where it reports more than one warning or error.
 
 BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed.
 """
@@ -55,7 +56,14 @@ PRESETS = ("PAINT", "BAKE", "TILE")
 METHODS = (*PRESETS, "SMART", "UNWRAP")
 SIZE = 1024  # points across the raster that counts overlaps and what is covered
 MOST_SECONDS = 120.0
-TITLES = ("model", "method", "seconds", "islands", "covered", "doubly", "smallest", "flipped", "outside")
+MOST_WARNINGS = 1
+TITLES = (
+    *("model", "method", "seconds", "islands", "covered", "doubly", "smallest", "flipped", "outside"),
+    *("warnings", "informed"),
+)
+
+Report = tuple[str, str]
+"""Its type, such as "WARNING", and its text."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +71,8 @@ class Row:
     """The figures of one map, in the order of the titles.
 
     covered, doubly: shares of the square that one triangle or several cover. smallest: the area of the least island as
-    a share of the mean's. outside: how far the map leaves the square.
+    a share of the mean's. outside: how far the map leaves the square. warnings, informed: how many reports of Auto
+    Unwrap were warnings or worse, and how many others it made; Blender's operators make theirs out of a script's sight.
     """
 
     model: str
@@ -75,11 +84,13 @@ class Row:
     smallest: float
     flipped: int
     outside: float
+    warnings: int
+    informed: int
 
     def is_good(self) -> bool:
-        """Whether it has no flips and, unless tiled, no overlaps and fits in the square."""
+        """Whether it has no flips and hardly a warning and, unless tiled, no overlaps and fits in the square."""
         packed = self.method == "TILE" or (self.doubly == 0 and self.outside == 0)
-        return packed and self.flipped == 0
+        return packed and self.flipped == 0 and self.warnings <= MOST_WARNINGS
 
 
 def press(method: str) -> None:
@@ -109,7 +120,7 @@ def triangles_of(objects: Objects) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         yield corner_uv, lsgp.measure_distortion(surface, corner_uv).island
 
 
-def figures(objects: Objects, name: tuple[str, str], seconds: float) -> Row:
+def figures(objects: Objects, name: tuple[str, str], seconds: float, reports: list[Report]) -> Row:
     """name: of the model and the method."""
     corner_uv, island = zip(*triangles_of(objects), strict=True)
     first = np.cumsum([0, *(part.max() + 1 for part in island)])
@@ -128,7 +139,28 @@ def figures(objects: Objects, name: tuple[str, str], seconds: float) -> Row:
         float(of_island.min() / of_island.mean()),
         int((areas_of <= 0).sum()),
         float(max(0.0, -uv.min(), uv.max() - 1)),
+        sum(kind != "INFO" for kind, _ in reports),
+        sum(kind == "INFO" for kind, _ in reports),
     )
+
+
+def keep_reports() -> list[Report]:
+    """What Auto Unwrap concludes from now on. Blender drops the reports of operators that scripts call."""
+    background = sys.modules[f"{demo_scene.ADDON}.operators.shared.background"]
+    conclude, kept = sys.modules[f"{demo_scene.ADDON}.operators.shared.conclusion"].conclude, []
+
+    class Listener:
+        """Stands for the operator: its own report is Blender's and cannot be replaced."""
+
+        def __init__(self, operator: bpy.types.Operator) -> None:
+            self.operator = operator
+
+        def report(self, kinds: set[str], text: str) -> None:
+            kept.extend((kind, text) for kind in kinds)
+            self.operator.report(kinds, text)
+
+    background.conclude = lambda operator, *rest: conclude(Listener(operator), *rest)
+    return kept
 
 
 def show(method: str) -> Iterator[float]:
@@ -154,22 +186,25 @@ def press_all(out: Path, only: str | None) -> Iterator[float]:
     """Press, measure and draw; yields seconds to wait."""
     os.environ[PICTURES] = str(out)
     rows: list[Row] = []
+    said: list[str] = []
     for model in MODELS:
         if only is not None and only not in model.__name__:
             continue
         for method in METHODS:
-            rows.append((yield from press_once(model, method)))
+            row, reports = yield from press_once(model, method)
+            rows.append(row)
+            said.extend(f"- {row.model}, {row.method}: {kind}: {text}" for kind, text in reports)
         pictures = [str(out / f"{model.__name__}-{method.lower()}.png") for method in METHODS]
         sheet = ["(", *pictures[:3], "+append", ")", "(", *pictures[3:], "+append", ")", "-append", "-resize", "50%"]
         subprocess.run(["convert", *sheet, str(out / f"{model.__name__}.png")], check=True)
-    (out / "table.md").write_text(table(rows))
+    (out / "table.md").write_text("\n".join([table(rows), *said, ""]))
     bad = [row for row in rows if row.method in PRESETS and not row.is_good()]
     if bad:
         raise RuntimeError("first_press: not as promised:\n" + table(bad))
 
 
-def press_once(model: Callable[[], Objects], method: str) -> Generator[float, None, Row]:
-    """Returns the row of the map."""
+def press_once(model: Callable[[], Objects], method: str) -> Generator[float, None, tuple[Row, list[Report]]]:
+    """Returns the row of the map, and what was reported."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield WAIT
     yield from prepare()
@@ -182,6 +217,7 @@ def press_once(model: Callable[[], Objects], method: str) -> Generator[float, No
             obj.select_set(True)
         bpy.context.view_layer.objects.active = objects[0]
     yield WAIT
+    reports = keep_reports()
     begin = time.monotonic()
     with inside(areas("VIEW_3D")[0]):
         press(method)
@@ -189,11 +225,13 @@ def press_once(model: Callable[[], Objects], method: str) -> Generator[float, No
         if time.monotonic() - begin > MOST_SECONDS:
             raise TimeoutError(f"{model.__name__} takes longer with {method}")
         yield 0.05
-    row = figures(objects, (model.__name__, method), time.monotonic() - begin)
+    row = figures(objects, (model.__name__, method), time.monotonic() - begin, reports)
     print(line_of(row), flush=True)
+    # The status bar is below the editors, and ImageMagick need not have a font.
+    bpy.context.workspace.status_text_set(caption(row))
     yield from show(method)
     take_picture(f"{model.__name__}-{method.lower()}")
-    return row
+    return row, reports
 
 
 def prepare() -> Iterator[float]:
@@ -208,6 +246,11 @@ def prepare() -> Iterator[float]:
         space.show_region_toolbar = False
     for space in areas("IMAGE_EDITOR")[0].spaces:
         space.show_region_toolbar = False
+
+
+def caption(row: Row) -> str:
+    told = f", {row.warnings} warnings, {row.informed} for information" if row.method in PRESETS else ""
+    return f"{row.model}, {row.method}: {row.islands} islands, {row.covered:.0%} covered{told}"
 
 
 def line_of(row: Row) -> str:
