@@ -88,12 +88,19 @@ def severity(problem: Problem) -> Severity:
 
 
 def relevant(region: Region, problems: Iterable[Problem]) -> list[Problem]:
-    """Those that are true of the mesh: vertices of faces that are not selected are not isolated, nor are those that are
-    stitched to others, which is told in their place."""
+    """Those that are true of the model: vertices of faces that are not selected are not isolated, nor are those that
+    are stitched to others, which is told in their place. Of pieces that touch where a Mirror modifier merges a half
+    with its image nothing is told, since it would merge them again.
+    """
     stitching = native.part("stitching")
     own = np.where(region.vertex_used[region.stitched], region.stitched, np.arange(len(region.stitched)))
     true = stitching.without_stitched(region.stitched, problems)
-    kept = [problem for problem in true if region.is_whole or problem.code != "ISOLATED_VERTICES"]
+    kept = [
+        problem
+        for problem in true
+        if (region.is_whole or problem.code != "ISOLATED_VERTICES")
+        and (problem.code != "SPLIT_VERTEX" or not region.in_mirror_plane[problem.elements.indices].all())
+    ]
     return [*stitching.stitched_finding(own), *kept]
 
 

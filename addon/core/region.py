@@ -43,6 +43,7 @@ class Region:
     density_weight: how many times the texel density of other objects this one is to have.
     stitched: (n,) int32, the vertex of the surface that each vertex of the mesh is; itself for most.
     mesh_edges: (e, 2) int32, the edges of the faces with the vertices of the mesh.
+    in_mirror_plane: (n,) bool, the vertices that a Mirror modifier merges with their images.
     is_rounded: whether the Subdivision Surface modifier makes something round of it, and its edges are no creases.
     """
 
@@ -64,6 +65,7 @@ class Region:
     object_scale: float
     stitched: NDArray[np.int32]
     mesh_edges: NDArray[np.int32]
+    in_mirror_plane: NDArray[np.bool_]
     density_weight: float = 1.0
     is_rounded: bool = False
 

@@ -19,6 +19,7 @@ from ..core.region import Region
 from .angles import angles_in
 from .cones import weights_in
 from .image_aspect import image_aspect
+from .mirror_planes import in_mirror_plane
 from .reader import readable_mesh
 from .stored_mesh import StoredMesh
 from .subdivided import Subdivided, subdivide
@@ -131,6 +132,7 @@ def build_region(
         is_rounded=is_rounded,
         stitched=mesh.stitched,
         mesh_edges=mesh.edges[edge_used],
+        in_mirror_plane=in_mirror_plane(obj, mesh.places),
     )
 
 

@@ -89,6 +89,47 @@ def test_vertices_without_faces_are_information(reports):
     assert kept.severity == Severity.INFORMATION and kept.elements.vertices.tolist() == [3]
 
 
+def half_with_touching_pieces():
+    """Two faces on one side of the plane across X that touch each other in it, at a single vertex."""
+
+    def build(bm):
+        places = [(0, 0, 0), (0, -1, 0), (1, -1, 0), (1, 1, 0), (0, 1, 0)]
+        own = [bm.verts.new((x, y + 3, z + 3)) for x, y, z in places]
+        for numbers in ((0, 1, 2), (0, 3, 4)):
+            bm.faces.new([own[i] for i in numbers])
+
+    return add_object("Half", build)
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "TILE", "BAKE"])
+def test_nothing_is_said_of_vertices_at_which_a_half_touches_its_image(preset, reports):
+    half = half_with_touching_pieces()
+    plane = bpy.data.objects.new("Plane", None)
+    bpy.context.collection.objects.link(plane)
+
+    def is_told():
+        bpy.context.view_layer.update()
+        reports()
+        assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
+        told = "1 vertex separate pieces of the surface touch" in reports()
+        assert told == any("touch" in found.text for found in findings.last(half))
+        return told
+
+    assert is_told()
+    mirror = half.modifiers.new("Mirror", "MIRROR")
+    assert not is_told()
+    mirror.use_mirror_merge = False
+    assert is_told()
+    mirror.use_mirror_merge, mirror.use_axis = True, (False, True, True)
+    assert is_told()
+    # The plane of another object, which the half may lie beside.
+    mirror.use_axis, mirror.mirror_object = (True, False, False), plane
+    half.location.x = plane.location.x = 2
+    assert not is_told()
+    plane.location.x = 1
+    assert is_told()
+
+
 def test_codes_are_in_the_log_and_not_in_reports(reports):
     add_sphere()
     reports()
