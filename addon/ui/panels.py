@@ -151,7 +151,7 @@ class VIEW3D_PT_cone_unwrap_seams(ConeUnwrapSubPanel, bpy.types.Panel):
         draw_wrapped(self.layout, context, tables.seam_summary(certificate), icon="CHECKMARK" if exact else "ERROR")
         rows = tables.seam_rows(certificate)
         if rows:
-            draw_table(self.layout, tables.SEAM_HEADER, rows)
+            draw_table(self.layout, tables.SEAM_HEADER, rows, first=0.3)
         rest = len(certificate["cuts"]) - len(rows)
         if rest:
             self.layout.label(text=f"and {counted(rest, 'more cut', 'more cuts')}, none worse")

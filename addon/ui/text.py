@@ -40,8 +40,13 @@ def draw_wrapped(layout: bpy.types.UILayout, context: bpy.types.Context, text: s
         column.label(text=line, icon="NONE" if icon == "NONE" else icon if number == 0 else "BLANK1")
 
 
-def draw_table(layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> None:
-    """Rows of texts, with a wide first column on the left and the others aligned to the right."""
+def draw_table(
+    layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterable[tuple[str, ...]], first: float = 0.5
+) -> None:
+    """Rows of texts, with the first column on the left and the others, of one width, aligned to the right.
+
+    first: the share of the first column.
+    """
     column = layout.column(align=True)
     column.scale_y = 0.85
     for row in [header, *rows]:
@@ -49,8 +54,7 @@ def draw_table(layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterab
         rest.active = row is not header
         for place, text in enumerate(row):
             columns_left = len(row) - place
-            # The first column is as wide as the others together.
-            part = rest.split(factor=0.5 if place == 0 else 1 / columns_left) if columns_left > 1 else rest
+            part = rest.split(factor=first if place == 0 else 1 / columns_left) if columns_left > 1 else rest
             cell = part.row()
             cell.alignment = "LEFT" if place == 0 else "RIGHT"
             cell.label(text=text)

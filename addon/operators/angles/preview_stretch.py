@@ -31,7 +31,7 @@ class MESH_OT_cone_preview(AngleOperator, bpy.types.Operator):
     shown = ("gains", "seams", "border")
 
     gains: bpy.props.BoolProperty(
-        name="Gain of One More Cone",
+        name="Gain of a Cone",
         description="Also write by how much one more cone at each vertex would lower the stretch to the "
         f'attribute "{identifiers.GAIN_ATTRIBUTE}"',
         default=False,

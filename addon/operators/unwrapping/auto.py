@@ -123,7 +123,7 @@ class UV_OT_cone_auto_unwrap(
         items=enum_items(STACKS),
     )
     use_subsurf_data: bpy.props.BoolProperty(
-        name="Use Subdivision Surface",
+        name="Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
         default=True,
     )

@@ -21,7 +21,7 @@ class LowStretchProperties:
         items=enum_items(MODES),
     )
     stretch: bpy.props.FloatProperty(
-        name="Stretch Reduction",
+        name="Less Stretch",
         description="From 0, the conformal map, to 1, the map with the least stretch",
         default=1.0,
         min=0.0,

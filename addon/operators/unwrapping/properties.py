@@ -62,7 +62,7 @@ class UnwrapProperties(DirectionProperty):
         default="SPLIT",
     )
     use_subsurf_data: bpy.props.BoolProperty(
-        name="Use Subdivision Surface",
+        name="Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
         default=False,
     )

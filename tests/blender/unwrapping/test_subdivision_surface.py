@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Use Subdivision Surface: the map is that of the surface that the modifier makes."""
+"""Subdivision Surface: the map is that of the surface that the modifier makes."""
 
 import bmesh
 import bpy
