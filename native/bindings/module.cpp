@@ -410,6 +410,14 @@ py::dict parameterize_again(lsgp::Solver& solver, const ConeArrays& cones, const
   return to_dict(without_gil([&] { return solver.parameterize(call.cones, call.options, call.pins, call.progress); }));
 }
 
+py::dict parameterize_small(const lsgp::Preview& preview, const ConeArrays& cones, const py::dict& option_values,
+                            const ProgressCallback& progress) {
+  const lsgp::Cones wanted = to_cones(cones);
+  const lsgp::Options options = to_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_dict(without_gil([&] { return preview.parameterize(wanted, options, tell); }));
+}
+
 py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones, const py::dict& option_values,
                    const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
@@ -669,6 +677,14 @@ PYBIND11_MODULE(_lsgp, module) {
            "surface"_a, "earlier"_a)
       .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a)
       .def("place_cones", &place_cones_again, "cones"_a, "options"_a, "progress"_a);
+  py::class_<lsgp::Preview>(module, "Preview")
+      .def(py::init([](const SurfaceArrays& surface, Index triangles, const ProgressCallback& progress) {
+             lsgp::Surface given = to_surface(surface);
+             const lsgp::Progress tell = to_progress(progress);
+             return without_gil([&] { return lsgp::Preview(std::move(given), triangles, tell); });
+           }),
+           "surface"_a, "triangles"_a, "progress"_a)
+      .def("parameterize", &parameterize_small, "cones"_a, "options"_a, "progress"_a);
   py::class_<lsgp::GrabbedCut>(module, "GrabbedCut")
       .def_property_readonly("left", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.left()); })
       .def_property_readonly("right", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.right()); })

@@ -32,6 +32,7 @@ from importlib.metadata import version
 
 from . import certificate, lattice
 from .api import (
+    Preview,
     Solver,
     cone_gains,
     crease_borders,
@@ -109,6 +110,7 @@ __all__ = [
     "Pins",
     "Placement",
     "Prescription",
+    "Preview",
     "QuadMesh",
     "QuadQuality",
     "QuadRemesh",

@@ -111,6 +111,49 @@ class Solver:
         return place_cones(self, cones, angles, progress=progress, **options)
 
 
+class Preview:
+    """Approximates the maps of a large surface at the speed of a small one, for instance while a cone is dragged.
+
+    The surface is reduced to few triangles once, which takes about as long as a map. Boundaries, seams, borders,
+    features, and vertices and edges that are not manifold stay as they are.
+
+    surface: the one to parameterize. triangles: about how many it is reduced to; if it has no more, maps are exact.
+    progress: as for `parameterize`.  Raises InputError, SolverError (OUT_OF_MEMORY), Cancelled.
+    """
+
+    def __init__(self, surface: Surface, *, triangles: int = 10_000, progress: Progress | None = None) -> None:
+        arguments.require_callable(progress)
+        count = arguments.whole_number("triangles", triangles, 1, "pass a number of triangles from 1")
+        self._preview = _lsgp.Preview(surface_arrays(surface), count, progress)
+        self._surface = surface
+
+    @property
+    def surface(self) -> Surface:
+        return self._surface
+
+    def parameterize(
+        self,
+        cones: ArrayLike,
+        angles: Sequence[float | None] | FloatArray | None = None,
+        options: Options = Options(),
+        progress: Progress | None = None,
+    ) -> Result:
+        """Arguments and errors as for `lsgp.parameterize`, without `pins` and seamless layouts, which must be exact.
+
+        The result is that of the reduced surface, carried over to the whole one: `corner_uv`, `log_scale`, and
+        `cut_edges` along edges beside the cuts there. What is measured is measured there; `flipped`,
+        `wrong_angle_sums` and `overlapping` are empty, and findings name no triangles. A cone is at most a fifth of a
+        triangle of the reduced surface from its place. Calls may run at the same time.
+
+        >>> preview = lsgp.Preview(surface)
+        >>> preview.parameterize([0, 1, 2, 3]).cone_angles.round(3)
+        array([3.142, 3.142, 3.142, 3.142])
+        """
+        arguments.require_callable(progress)
+        out = self._preview.parameterize(*cone_arrays(cones, angles, options), progress)
+        return _to_result(out, self._surface.borders)
+
+
 def _call(
     cones: ArrayLike,
     angles: Sequence[float | None] | FloatArray | None,

@@ -13,6 +13,7 @@
 #include "lsgp/ledger.hpp"
 #include "lsgp/options.hpp"
 #include "lsgp/placement.hpp"
+#include "lsgp/preview.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/quads.hpp"
 #include "lsgp/result.hpp"
