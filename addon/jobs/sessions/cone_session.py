@@ -26,6 +26,7 @@ from ...mesh.stored_mesh import FrozenMesh
 from ...mesh.subdivided import subdivide
 from ..angles.angle_table import FollowedTable
 from ..layouts.maps import report_on
+from ..tasks.computation import Computation
 from ..tasks.cuts import with_cut_costs
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 from ..uv_maps.texels import map_density
@@ -40,30 +41,39 @@ if TYPE_CHECKING:
     from ..tasks.solving import Progress
 
 
+# Triangles from which on a map is not there within a twentieth of a second.
+PREVIEWED = 30_000
+_DRAFT = {"repair": False, "overlaps": "keep", "mode": "conformal", "seamless": None}
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """One state of the cones, to be solved, which touches nothing in Blender.
 
-    triangles: those of the whole mesh that are part of it.
+    triangles: those of the whole mesh that are part of it. solver: a `Preview` where the map is an approximate one.
     """
 
     triangles: NDArray[np.int64]
     task: UnwrapTask
-    solver: lsgp.Solver
+    solver: lsgp.Solver | lsgp.Preview
 
     def solve(self, progress: Progress | None = None) -> Unwrapped:
         """Raises LsgpError."""
         return unwrap(self.task, progress, self.solver)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _Scope:
-    """The connected parts with edited cones: their triangles in the whole mesh, as a region, and its solver."""
+    """The connected parts with edited cones: their triangles in the whole mesh, as a region, and its solver.
+
+    preview: what makes that of large ones, once a cone was dragged.
+    """
 
     parts: frozenset[int]
     triangles: NDArray[np.int64]
     region: Region
     solver: lsgp.Solver
+    preview: Computation[lsgp.Preview] | None = None
 
 
 class ConeSession(MapSession):
@@ -111,7 +121,33 @@ class ConeSession(MapSession):
 
     def draft(self) -> Step:
         """The cones as they are, to be solved quickly: overlaps and flipped faces stay, and tiles do not match."""
-        return self._step(repair=False, overlaps="keep", mode="conformal", seamless=None)
+        return self._step(**_DRAFT)
+
+    def has_previews(self) -> bool:
+        """Whether `preview` will serve instead of `draft` while a cone is dragged; makes what that takes."""
+        scope = self._current_scope()
+        if len(scope.triangles) < PREVIEWED or self._whole.pinned[scope.triangles].any():
+            return False
+        if scope.preview is None:
+            surface = scope.region.surface
+            scope.preview = Computation(lambda progress: native.lsgp.Preview(surface, progress=progress))
+        return not (scope.preview.finished() and scope.preview.failed)
+
+    def preview(self) -> Step | None:
+        """As `draft`, but approximate and quicker still; None while what that takes is being made."""
+        preview = self._current_scope().preview
+        if not preview.finished():
+            return None
+        # Of a surface that has lost its symmetry.
+        step = self._step(**_DRAFT, mirrored_cuts=False)
+        return replace(step, solver=preview.outcome())
+
+    def stop(self) -> None:
+        """Stop making previews, and wait for the end."""
+        if self._scope is not None and self._scope.preview is not None and not self._scope.preview.finished():
+            self._scope.preview.stop()
+            self._scope.preview.finished(None)
+            self._scope.preview = None
 
     def show(self, step: Step, unwrapped: Unwrapped) -> None:
         """Write a solved step to the mesh."""
@@ -208,6 +244,7 @@ class ConeSession(MapSession):
     def _current_scope(self) -> _Scope:
         touched = self.cones.touched
         if self._scope is None or self._scope.parts != touched:
+            self.stop()
             whole = self._whole.region
             surface = whole.surface
             inside = np.isin(self._part_of, list(touched))

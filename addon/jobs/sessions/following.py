@@ -18,6 +18,7 @@ class Follower:
     def __init__(self, session: ConeSession) -> None:
         self.outdated = False
         self.problem = ""
+        self._dragging = self._is_preview = False
         self._session = session
         self._computation: Computation | None = None
         self._step: Step | None = None
@@ -26,8 +27,17 @@ class Follower:
     def is_busy(self) -> bool:
         return self._computation is not None
 
+    def drag(self, dragging: bool) -> None:
+        """Whether a cone is being dragged: meanwhile, large maps are approximate; the exact one follows."""
+        self.outdated |= self._is_preview and not dragging
+        self._dragging = dragging
+
     def follow(self) -> bool:
         """Begin the next step where one is due, and show a finished one.  Returns whether one was shown or failed."""
+        previews = self._dragging and self.outdated and bool(self._session.cones.touched) and self._session.has_previews()
+        if previews and self._computation is not None and not self._is_preview:
+            # An exact map that is no longer the one of the cones would only delay the next preview.
+            self._abandon()
         if self._computation is not None:
             return self._take()
         if not self.outdated:
@@ -36,14 +46,22 @@ class Follower:
         if not self._session.cones.touched:
             # All steps are undone.
             self._session.show_before()
-            self.problem = ""
+            self.problem, self._is_preview = "", False
             return True
-        self._step = self._session.draft()
-        self._computation = Computation(self._step.solve)
+        step = self._session.preview() if previews else self._session.draft()
+        if step is None:
+            self.outdated = True
+            return False
+        self._step, self._is_preview = step, previews
+        self._computation = Computation(step.solve)
         return self._take(SOON)
 
     def stop(self) -> None:
         """Stop computing and wait for the end, since two computations cannot use the same solver."""
+        self._abandon()
+        self._session.stop()
+
+    def _abandon(self) -> None:
         if self._computation is not None:
             self._computation.stop()
             self._computation.finished(None)

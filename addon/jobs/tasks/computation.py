@@ -34,6 +34,11 @@ class Computation(Generic[T]):
         self._thread.join(seconds)
         return not self._thread.is_alive()
 
+    @property
+    def failed(self) -> bool:
+        """Whether `outcome` raises an exception.  Only once it has finished."""
+        return self._error is not None
+
     def outcome(self) -> T:
         """Its return value; raises the exception that it raised.  Only once it has finished."""
         if self._error is not None:

@@ -242,10 +242,13 @@ def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
     ]
 
 
-def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | None = None) -> Unwrapped:
+def unwrap(
+    task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | lsgp.Preview | None = None
+) -> Unwrapped:
     """The map of one task.  Raises LsgpError.
 
-    solver: for the region's surface with its costs of cuts, to reuse what it has factorized.
+    solver: for the region's surface with its costs of cuts, to reuse what it has factorized; or to approximate the map
+    of a region without pins.
     """
     lsgp = native.lsgp
     if solver is None:
@@ -259,7 +262,9 @@ def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | No
         result = _completed(task, imposed, pins, progress)
     else:
         parameterize = partial(lsgp.parameterize, region.surface) if solver is None else solver.parameterize
-        result = parameterize(imposed.cones, imposed.angles, task.options, pins, progress)
+        if pins is not None:
+            parameterize = partial(parameterize, pins=pins)
+        result = parameterize(imposed.cones, imposed.angles, task.options, progress=progress)
     result = replace(result, warnings=_with_one_stretch(result, task))
     result = replace(result, warnings=_with_size_of_tiles(result, task))
     between = told_between(region.surface, imposed.cones)

@@ -97,6 +97,11 @@ class MESH_OT_cone_edit(ModalEdit, bpy.types.Operator):
         else:
             self._draw([edited])
 
+    def _drag(self, dragging: bool) -> None:
+        super()._drag(dragging)
+        if self._objects.active is not None:
+            self._objects.active.follower.drag(dragging)
+
     def _begin(self, edited: EditedObject) -> bool:
         """Make an object the active one.  Returns whether its cones can be edited."""
         try:
@@ -167,7 +172,7 @@ class MESH_OT_cone_edit(ModalEdit, bpy.types.Operator):
         self._moved = False
         shown = self._objects.follow()
         # While the map is late, at least the cone is drawn at the cursor.
-        if moved and active.follower.is_busy:
+        if moved and active not in shown:
             shown.append(active)
         if shown:
             self._draw(shown)

@@ -15,15 +15,15 @@ namespace lsgp {
 
 namespace {
 
-constexpr int most_degree = 16;               // triangles at a vertex that is removed
+constexpr int most_neighbors = 16;               // triangles at a vertex that is removed
 constexpr double share_of_pass = 0.5;         // of the vertices that are left, those that a pass may remove
 constexpr double flat_weight = 0.05;          // of a ring's area beside that of its bending
 constexpr double least_shape = 0.01;          // area of a triangle relative to its squared sides; 0.144 is the best
 constexpr double least_flat_area = 1e-4;      // doubled, relative to the squared size of the ring
 constexpr double least_cosine = 0.2;          // between the normals of a triangle and of the ring
-constexpr double operations_a_removal = 1e3;  // about
+constexpr double operations_a_refill = 1e3;  // about
 constexpr double operations_a_ring = 100;
-constexpr double bytes_a_halfedge = 40;
+constexpr double bytes_a_corner = 40;
 
 using Point = Eigen::Vector2d;
 
@@ -124,7 +124,7 @@ class Thinning {
   }
 
  private:
-  static constexpr Index most_corners = 4 * most_degree;
+  static constexpr Index most_corners = 4 * most_neighbors;
 
   Index origin(Index h) const { return triangles_.data()[h]; }
   Index target(Index h) const { return triangles_.data()[next(h)]; }
@@ -174,7 +174,7 @@ class Thinning {
     slots_.clear();
     Index h = outgoing_[v];
     do {
-      if (ssize(ring_) == most_degree) return false;
+      if (ssize(ring_) == most_neighbors) return false;
       ring_.push_back(target(h));
       across_.push_back(twin_[next(h)]);
       slots_.push_back(h);
@@ -337,7 +337,7 @@ class Thinning {
   }
 
   bool remove_vertex(Index v, int pass) {
-    checkpoint(operations_a_removal);
+    checkpoint(operations_a_refill);
     if (!flatten(v) || !triangulate()) return false;
     take_points(v);
     fill();
@@ -392,7 +392,7 @@ void join_polygons(const Surface& surface, const EdgeTable& edges, PerTriangle<I
 }  // namespace
 
 ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, Index triangles) {
-  require_memory(bytes_a_halfedge * 3 * static_cast<double>(surface.triangles.rows()));
+  require_memory(bytes_a_corner * 3 * static_cast<double>(surface.triangles.rows()));
   Thinning thinning(surface, find_twins(surface, edges));
   thinning.remove(triangles);
   ThinnedSurface out = thinning.read(surface.triangles);
