@@ -53,9 +53,9 @@ Eigen::VectorXd costs_at_vertices(const Surface& surface) {
 class ConedSurface {
  public:
   // cones: vertices that will be added.
-  ConedSurface(const ThinnedSurface& thinned, const PerHalfedge<char>& fixed, const Array<Index>& vertex_of_node,
-               const PerVertex<Index>& node, const std::vector<Index>& cones)
-      : refined(thinned, fixed), vertex_of_node_(vertex_of_node), node_(node), cones_(cones) {}
+  ConedSurface(const ThinnedSurface& thinned, const Positions& positions, const PerHalfedge<char>& fixed,
+               const Array<Index>& vertex_of_node, const PerVertex<Index>& node, const std::vector<Index>& cones)
+      : refined(thinned, positions, fixed), vertex_of_node_(vertex_of_node), node_(node), cones_(cones) {}
 
   // Returns the number of the vertex that becomes the cone.
   Index add(Index vertex, const SurfacePlace& place) {
@@ -70,7 +70,7 @@ class ConedSurface {
   // After the last cone.
   Triangles triangles() {
     for (Index f = 0; f < refined.triangle_count(); ++f) {
-      if (!refined.is_divided(f)) triangle_of_row_.push_back(f);
+      if (!refined.is_replaced(f)) triangle_of_row_.push_back(f);
     }
     Triangles out(ssize(triangle_of_row_), 3);
     for (Index row = 0; row < out.rows(); ++row) {
@@ -88,9 +88,9 @@ class ConedSurface {
   RefinedSurface refined;
 
  private:
-  Array<Index> vertex_of_node_;  // those that were added last
-  PerVertex<Index> node_;        // none of vertices that are not there
-  Array<Index> cones_;           // and the vertices in place of them
+  Array<Index> vertex_of_node_;   // those that were added last
+  PerVertex<Index> node_;         // none of vertices that are not there
+  Array<Index> cones_;            // and the vertices in place of them
   Array<Index> triangle_of_row_;  // of `refined`
 };
 
@@ -113,10 +113,10 @@ struct Preview::Kept {
   const Surface surface;
   PerHalfedge<Index> twin;  // of the surface
   ThinnedSurface thinned;
-  PerHalfedge<char> fixed;       // of the thinned triangles
-  Eigen::VectorXd cost;          // (n) of cuts, or empty
-  Positions directions;          // of the thinned triangles, or empty
-  PerVertex<Index> node;         // the number of each vertex among those that are left, or none
+  PerHalfedge<char> fixed;  // of the thinned triangles
+  Eigen::VectorXd cost;     // (n) of cuts, or empty
+  Positions directions;     // of the thinned triangles, or empty
+  PerVertex<Index> node;    // the number of each vertex among those that are left, or none
   Array<Index> vertex_of_node;
 };
 
@@ -172,7 +172,7 @@ Surface Preview::Kept::smaller(ConedSurface& coned) const {
   if (directions.rows() > 0) {
     out.directions.resize(out.triangles.rows(), 3);
     for (Index row = 0; row < out.triangles.rows(); ++row) {
-      out.directions.row(row) = directions.row(coned.refined.whole(coned.triangle_of_row()[row]));
+      out.directions.row(row) = directions.row(coned.refined.thinned_at(coned.triangle_of_row()[row]));
     }
   }
   if (cost.size() > 0) {
@@ -189,8 +189,7 @@ Surface Preview::Kept::smaller(ConedSurface& coned) const {
   return out;
 }
 
-Result Preview::Kept::carried(const ConedSurface& coned, const Cones& cones, const Cones& placed,
-                              Result small) const {
+Result Preview::Kept::carried(const ConedSurface& coned, const Cones& cones, const Cones& placed, Result small) const {
   const Array<Index>& triangle_of_row = coned.triangle_of_row();
   PerHalfedge<Complex> position(3 * coned.refined.triangle_count());
   PerTriangle<Index> row_of_triangle(coned.refined.triangle_count(), none);
@@ -254,7 +253,8 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
     return lsgp::parameterize(kept_->surface, cones, options, {}, progress);
   }
   require_valid(kept_->surface, cones);
-  ConedSurface coned(thinned, kept_->fixed, kept_->vertex_of_node, kept_->node, cones.vertices);
+  ConedSurface coned(thinned, kept_->surface.positions, kept_->fixed, kept_->vertex_of_node, kept_->node,
+                     cones.vertices);
   Cones placed{{}, cones.angles};
   for (const Index v : cones.vertices) placed.vertices.push_back(coned.add(v, thinned.place[v]));
   const Surface small = kept_->smaller(coned);

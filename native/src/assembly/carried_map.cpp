@@ -35,7 +35,7 @@ CarriedMap::CarriedMap(const Triangles& triangles, const ThinnedSurface& thinned
   });
   // Those that were added are corners again.
   for (auto f = static_cast<Index>(thinned.triangles.rows()); f < refined.triangle_count(); ++f) {
-    if (refined.is_divided(f)) continue;
+    if (refined.is_replaced(f)) continue;
     for (int c = 0; c < 3; ++c) {
       const Index v = refined.triangle(f)[static_cast<std::size_t>(c)];
       around_[v] = f;
@@ -48,7 +48,7 @@ void CarriedMap::mark_cuts() {
   const auto origin = [&](Index h) { return refined_.triangle(h / 3)[static_cast<std::size_t>(h % 3)]; };
   for (Index h = 0; h < 3 * refined_.triangle_count(); ++h) {
     const Index twin = refined_.twin(h);
-    if (refined_.is_divided(h / 3) || twin < h) continue;
+    if (refined_.is_replaced(h / 3) || twin < h) continue;
     if (!differ(position_[h], position_[next(twin)]) && !differ(position_[next(h)], position_[twin])) continue;
     is_on_cut_[origin(h)] = is_on_cut_[origin(twin)] = 1;
   }
@@ -85,7 +85,8 @@ Complex CarriedMap::seen_from(Index home, Index vertex) const {
     const auto& corners = refined_.triangle(f);
     const auto at = std::find(corners.begin(), corners.end(), vertex);
     if (f == around_[vertex] || at != corners.end()) {
-      Complex z = at != corners.end() ? position_[3 * f + static_cast<Index>(at - corners.begin())] : of_vertex_[vertex];
+      Complex z =
+          at != corners.end() ? position_[3 * f + static_cast<Index>(at - corners.begin())] : of_vertex_[vertex];
       for (int k = i; k > 0; k = steps[k].before) {
         const Index h = steps[k].through, twin = refined_.twin(h);
         const Complex tail = position_[h], head = position_[next(h)];

@@ -2,60 +2,71 @@
 // A thinned surface that gets single vertices back.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 
 #include "mesh/thinned_surface.hpp"
 
 namespace lsgp {
 
-// Its triangles are those of the thinned surface and, behind them, the parts into which added vertices divide them.
+// Its triangles are those of the thinned surface and, behind them, those around added vertices.
 class RefinedSurface {
  public:
-  // fixed: (3t) edges that stay whole, on both halfedges.
-  RefinedSurface(const ThinnedSurface& thinned, const PerHalfedge<char>& fixed);
+  // positions: of the whole surface.  fixed: (3t) edges that stay, on both halfedges.
+  RefinedSurface(const ThinnedSurface& thinned, const Positions& positions, const PerHalfedge<char>& fixed);
 
-  // Adds a vertex at its place unless a corner near it does as well.  may_be: whether a vertex does.  Returns the
-  // vertex that is there.
+  // Adds a vertex at its place, joined to about six others, since a cone with few triangles around it cannot have large
+  // angles; unless a corner that is near it serves as well.  may_be: whether a vertex does.  Returns the one that is
+  // there.
   template <typename Predicate>
   Index add(Index vertex, const SurfacePlace& place, const Predicate& may_be) {
     const SurfacePlace at = locate(place);
     for (int c = 0; c < 3; ++c) {
-      const Index corner = triangles_[at.triangle][static_cast<std::size_t>(c)];
+      const Index corner = corner_of(at.triangle, c);
       if (at.share[c] > share_at_corner && may_be(corner)) return corner;
     }
     insert(vertex, at);
     return vertex;
   }
 
-  // The place on the parts of one of the thinned surface's triangles.
+  // The place on the triangles that have replaced one of the thinned surface's.
   SurfacePlace locate(SurfacePlace place) const;
 
   Index triangle_count() const { return static_cast<Index>(triangles_.size()); }
+  Index corner_of(Index f, int corner) const { return triangles_[f][static_cast<std::size_t>(corner)]; }
   const std::array<Index, 3>& triangle(Index f) const { return triangles_[f]; }
-  bool is_divided(Index f) const { return part_[f].size > 0; }
+  bool is_replaced(Index f) const { return star_of_[f] != none; }
   Index twin(Index h) const { return twin_[h]; }
-  Index whole(Index f) const { return whole_[f]; }  // the thinned surface's triangle that it is a part of
+  Index thinned_at(Index f) const { return thinned_at_[f]; }  // the thinned surface's triangle about where it is
 
  private:
-  static constexpr double share_at_corner = 0.8;
+  static constexpr double share_at_corner = 0.9;
+  using Point = Eigen::Vector2d;
 
-  // The parts have the added vertex in place of one corner each.
-  struct Parts {
-    int size = 0;
-    double share[3];  // of the added vertex
-    Index with_corner_replaced[3];
+  // The triangles around an added vertex, in the plane with that at 0.
+  struct Star {
+    Index first;        // triangle; the others follow
+    Array<Point> ring;  // the ends of their outer edges
+  };
+  // An edge around the triangles that are replaced: its first end, and its halfedge inside them.
+  struct Outer {
+    Index vertex, halfedge;
+    Point at;
   };
 
   void insert(Index vertex, const SurfacePlace& at);
-  Index append(Index f, int corner, Index vertex);
+  Point apex_beyond(Index h, const Point& tail, const Point& head) const;
+  Index append(Index vertex, Index tail, Index head, Index thinned);
   void link(Index h, Index twin);
-  void divide(Index f, int opposite, Index vertex, double at_first);
 
+  const Positions& positions_;
   PerTriangle<std::array<Index, 3>> triangles_;
   PerHalfedge<Index> twin_;
   PerHalfedge<char> fixed_;
-  PerTriangle<Parts> part_;
-  PerTriangle<Index> whole_;
+  PerTriangle<Index> star_of_;                 // that replaces it, or none
+  PerTriangle<std::array<Point, 3>> in_star_;  // where its corners are in the plane of that
+  PerTriangle<Index> thinned_at_;
+  Array<Star> stars_;
 };
 
 }  // namespace lsgp

@@ -15,12 +15,12 @@ namespace lsgp {
 
 namespace {
 
-constexpr int most_neighbors = 16;               // triangles at a vertex that is removed
-constexpr double share_of_pass = 0.5;         // of the vertices that are left, those that a pass may remove
-constexpr double flat_weight = 0.05;          // of a ring's area beside that of its bending
-constexpr double least_shape = 0.01;          // area of a triangle relative to its squared sides; 0.144 is the best
-constexpr double least_flat_area = 1e-4;      // doubled, relative to the squared size of the ring
-constexpr double least_cosine = 0.2;          // between the normals of a triangle and of the ring
+constexpr int most_neighbors = 16;           // triangles at a vertex that is removed
+constexpr double share_of_pass = 0.5;        // of the vertices that are left, those that a pass may remove
+constexpr double flat_weight = 0.05;         // of a ring's area beside that of its bending
+constexpr double least_shape = 0.01;         // area of a triangle relative to its squared sides; 0.144 is the best
+constexpr double least_flat_area = 1e-4;     // doubled, relative to the squared size of the ring
+constexpr double least_cosine = 0.2;         // between the normals of a triangle and of the ring
 constexpr double operations_a_refill = 1e3;  // about
 constexpr double operations_a_ring = 100;
 constexpr double bytes_a_corner = 40;
@@ -146,8 +146,7 @@ class Thinning {
     Index h = outgoing_[v];
     const Eigen::Vector3d center = position(v);
     do {
-      const Eigen::Vector3d of_triangle =
-          (position(target(h)) - center).cross(position(origin(prev(h))) - center);
+      const Eigen::Vector3d of_triangle = (position(target(h)) - center).cross(position(origin(prev(h))) - center);
       normal += of_triangle;
       area += of_triangle.norm();
       h = twin_[prev(h)];
@@ -221,8 +220,7 @@ class Thinning {
     const Eigen::Vector3d across = first.cross(second);
     const double doubled = across.norm();
     if (!(across.dot(normal_) > least_cosine * doubled)) return 0;
-    const double shape =
-        doubled / 2 / (first.squaredNorm() + second.squaredNorm() + (second - first).squaredNorm());
+    const double shape = doubled / 2 / (first.squaredNorm() + second.squaredNorm() + (second - first).squaredNorm());
     return shape > least_shape ? shape : 0;
   }
 
