@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/map_surface.hpp"
 #include "assembly/carried_map.hpp"
 #include "assembly/cut_paths.hpp"
 #include "base/array.hpp"
@@ -262,7 +263,8 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
   for (auto& [vertex, turning] : of_small.loop_turning) vertex = coned.node(vertex);
   const ThreadCount threads(options.threads);
   try {
-    return kept_->carried(coned, cones, placed, lsgp::parameterize(small, placed, of_small, {}, progress));
+    Result of_surface = map_surface(small, placed, of_small, {}, OverlapSearch::left_out, progress);
+    return kept_->carried(coned, cones, placed, std::move(of_surface));
   } catch (const Error& error) {
     throw Error(error.code(), error.what(), on_whole_surface(coned, error.elements()));
   }

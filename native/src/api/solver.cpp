@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "api/cone_placement.hpp"
+#include "api/map_surface.hpp"
 #include "assembly/assembly.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/thread_team.hpp"
@@ -56,7 +57,7 @@ void quantize(KeptComponents& kept, const Options& options, MappedComponents& ma
 }
 
 Result map_components(const KnownSurface& known, const Cones& cones, const Options& options, const Pins& pins,
-                      const Progress& progress) {
+                      OverlapSearch search, const Progress& progress) {
   const Surface& surface = known.surface;
   KeptComponents& kept = known.components;
   Result result;
@@ -129,7 +130,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), mapped.results[i]->map);
   }
   assembly.require_any();
-  assembly.finish(cones, work.topology.duplicates);
+  assembly.finish(cones, work.topology.duplicates, search);
   say_once(result.warnings);
   monitor.advance(1);
   result.linear_algebra = counter.counted();
@@ -175,7 +176,7 @@ Solver::Solver(Solver&&) noexcept = default;
 Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins,
                             const Progress& progress) try {
   const Turn turn(*kept_->is_busy);
-  return map_components({surface_, *kept_->components}, cones, options, pins, progress);
+  return map_components({surface_, *kept_->components}, cones, options, pins, OverlapSearch::made, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }
@@ -187,10 +188,15 @@ Placement Solver::place_cones(const Cones& existing, const PlacementOptions& opt
   throw in_words(error);
 }
 
+Result map_surface(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                   OverlapSearch search, const Progress& progress) {
+  KeptComponents components(false);
+  return map_components({surface, components}, cones, options, pins, search, progress);
+}
+
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                     const Progress& progress) try {
-  KeptComponents components(false);
-  return map_components({surface, components}, cones, options, pins, progress);
+  return map_surface(surface, cones, options, pins, OverlapSearch::made, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }

@@ -132,7 +132,7 @@ void Assembly::require_any() {
   report_skipped(failures_, result_.warnings);
 }
 
-void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates) {
+void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates, OverlapSearch search) {
   place(arrange(islands_));
   {
     const ProgressMonitor::Stage stage(monitor_, "check");
@@ -143,7 +143,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
       features_.add(*solved.component, solved.map, corners(solved), surface_.positions);
     }
   }
-  {
+  if (search == OverlapSearch::made) {
     const ProgressMonitor::Stage stage(monitor_, "overlaps");
     find_overlapping();
   }

@@ -16,6 +16,9 @@
 
 namespace lsgp {
 
+// Whether overlapping triangles are looked for in the layout.
+enum class OverlapSearch { made, left_out };
+
 class Assembly {
  public:
   // Everything is collected in `result`, which holds the findings so far.
@@ -31,7 +34,7 @@ class Assembly {
   void require_any();
 
   // Arranges the islands, checks the result and reports its defects.  duplicates: as in Topology.
-  void finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates);
+  void finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates, OverlapSearch search);
 
  private:
   struct Solved {
