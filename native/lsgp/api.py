@@ -121,7 +121,7 @@ class Preview:
     progress: as for `parameterize`.  Raises InputError, SolverError (OUT_OF_MEMORY), Cancelled.
     """
 
-    def __init__(self, surface: Surface, *, triangles: int = 10_000, progress: Progress | None = None) -> None:
+    def __init__(self, surface: Surface, *, triangles: int = 8_000, progress: Progress | None = None) -> None:
         arguments.require_callable(progress)
         count = arguments.whole_number("triangles", triangles, 1, "pass a number of triangles from 1")
         self._preview = _lsgp.Preview(surface_arrays(surface), count, progress)
@@ -140,10 +140,10 @@ class Preview:
     ) -> Result:
         """Arguments and errors as for `lsgp.parameterize`, without `pins` and seamless layouts, which must be exact.
 
-        The result is that of the reduced surface, carried over to the whole one: `corner_uv`, `log_scale`, and
-        `cut_edges` along edges beside the cuts there. What is measured is measured there; `flipped`,
-        `wrong_angle_sums` and `overlapping` are empty, and findings name no triangles. A cone is at most a fifth of a
-        triangle of the reduced surface from its place. Calls may run at the same time.
+        The result is that of the reduced surface with the cones, carried over to the whole one: `corner_uv`,
+        `log_scale`, and `cut_edges` along edges beside the cuts there. What is measured is measured there, overlaps are
+        not; `flipped`, `wrong_angle_sums` and `overlapping` are empty, and findings name no triangles. Calls may run at
+        the same time.
 
         >>> preview = lsgp.Preview(surface)
         >>> preview.parameterize([0, 1, 2, 3]).cone_angles.round(3)

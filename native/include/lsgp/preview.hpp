@@ -18,14 +18,14 @@ class LSGP_API Preview {
  public:
   // triangles: about how many the surface is reduced to; if it has no more, maps are exact.
   // Throws what `parameterize` throws for invalid surfaces, CANCELLED.
-  explicit Preview(Surface surface, Index triangles = 10000, const Progress& progress = {});
+  explicit Preview(Surface surface, Index triangles = 8000, const Progress& progress = {});
   ~Preview();
   Preview(Preview&&) noexcept;
 
-  // The map, of which `corner_uv`, `log_scale` and the cuts are carried over from the smaller surface; what is measured
-  // is measured there, and no element that is flipped or overlaps is named. Cones are where they are asked for up to a
-  // fifth of a triangle of the smaller surface. May be called by several threads.
-  // Throws what `parameterize` throws; WRONG_PARAMETER for seamless layouts, which must be exact.
+  // The map, of which `corner_uv`, `log_scale` and the cuts are carried over from the smaller surface, to which the
+  // cones are added; what is measured is measured there, and no element that is flipped or overlaps is named. May be
+  // called by several threads. Throws what `parameterize` throws; WRONG_PARAMETER for seamless layouts, which must be
+  // exact.
   Result parameterize(const Cones& cones, const Options& options = {}, const Progress& progress = {}) const;
 
  private:

@@ -53,26 +53,21 @@ Eigen::VectorXd costs_at_vertices(const Surface& surface) {
 // The smaller surface with the cones among its vertices, as one of its own.
 class ConedSurface {
  public:
-  // cones: vertices that will be added.
   ConedSurface(const ThinnedSurface& thinned, const Positions& positions, const PerHalfedge<char>& fixed,
                const Array<Index>& vertex_of_node, const PerVertex<Index>& node, const std::vector<Index>& cones)
-      : refined(thinned, positions, fixed), vertex_of_node_(vertex_of_node), node_(node), cones_(cones) {}
-
-  // Returns the number of the vertex that becomes the cone.
-  Index add(Index vertex, const SurfacePlace& place) {
-    const auto is_free = [&](Index v) { return std::find(cones_.begin(), cones_.end(), v) == cones_.end(); };
-    const Index at = node_[vertex] != none ? vertex : refined.add(vertex, place, is_free);
-    cones_.push_back(at);
-    if (node_[at] != none) return node_[at];
-    vertex_of_node_.push_back(at);
-    return node_[at] = static_cast<Index>(vertex_of_node_.size()) - 1;
-  }
-
-  // After the last cone.
-  Triangles triangles() {
+      : refined(thinned, positions, fixed), vertex_of_node_(vertex_of_node), node_(node) {
+    for (const Index v : cones) {
+      if (node_[v] != none) continue;
+      refined.add(v, thinned.place[v]);
+      node_[v] = node_count();
+      vertex_of_node_.push_back(v);
+    }
     for (Index f = 0; f < refined.triangle_count(); ++f) {
       if (!refined.is_replaced(f)) triangle_of_row_.push_back(f);
     }
+  }
+
+  Triangles triangles() const {
     Triangles out(ssize(triangle_of_row_), 3);
     for (Index row = 0; row < out.rows(); ++row) {
       const auto& corners = refined.triangle(triangle_of_row_[row]);
@@ -91,7 +86,6 @@ class ConedSurface {
  private:
   Array<Index> vertex_of_node_;   // those that were added last
   PerVertex<Index> node_;         // none of vertices that are not there
-  Array<Index> cones_;            // and the vertices in place of them
   Array<Index> triangle_of_row_;  // of `refined`
 };
 
@@ -101,15 +95,9 @@ struct Preview::Kept {
   Kept(Surface given, Index triangles);
 
   // The smaller surface with the cones, as one to map.
-  Surface smaller(ConedSurface& coned) const;
-  // The result there on the whole surface.  cones, placed: as asked for, and as numbered there.
-  Result carried(const ConedSurface& coned, const Cones& cones, const Cones& placed, Result small) const;
-
-  SurfacePlace place_of_triangle(Index f) const {
-    const Index anchor = thinned.anchor[f];
-    if (anchor >= 0) return thinned.place[anchor];
-    return {-1 - anchor, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-  }
+  Surface smaller(const ConedSurface& coned) const;
+  // The result there on the whole surface.
+  Result carried(const ConedSurface& coned, Result small) const;
 
   const Surface surface;
   PerHalfedge<Index> twin;  // of the surface
@@ -130,7 +118,11 @@ Preview::Kept::Kept(Surface given, Index triangles) : surface(std::move(given)) 
   if (surface.directions.rows() > 0) {
     directions = Positions::Zero(thinned.triangles.rows(), 3);
     for (Index f = 0; f < surface.directions.rows(); ++f) {
-      directions.row(place_of_triangle(f).triangle) += surface.directions.row(f);
+      const Index* const corners = surface.triangles.row(f).data();
+      const auto is_gone = [&](Index v) { return thinned.place[v].corner() == none; };
+      const Index* const gone = std::find_if(corners, corners + 3, is_gone);
+      const Index at = gone == corners + 3 ? thinned.kept[f] : thinned.place[*gone].triangle;
+      directions.row(at) += surface.directions.row(f);
     }
   }
   node.assign(surface.positions.rows(), none);
@@ -153,7 +145,7 @@ Elements on_whole_surface(const ConedSurface& coned, Elements elements) {
 
 }  // namespace
 
-Surface Preview::Kept::smaller(ConedSurface& coned) const {
+Surface Preview::Kept::smaller(const ConedSurface& coned) const {
   Surface out;
   out.triangles = coned.triangles();
   out.positions.resize(coned.node_count(), 3);
@@ -190,7 +182,7 @@ Surface Preview::Kept::smaller(ConedSurface& coned) const {
   return out;
 }
 
-Result Preview::Kept::carried(const ConedSurface& coned, const Cones& cones, const Cones& placed, Result small) const {
+Result Preview::Kept::carried(const ConedSurface& coned, Result small) const {
   const Array<Index>& triangle_of_row = coned.triangle_of_row();
   PerHalfedge<Complex> position(3 * coned.refined.triangle_count());
   PerTriangle<Index> row_of_triangle(coned.refined.triangle_count(), none);
@@ -215,10 +207,7 @@ Result Preview::Kept::carried(const ConedSurface& coned, const Cones& cones, con
   Eigen::VectorXd log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   for (Index i = 0; i < coned.node_count(); ++i) log_scale[coned.vertex_of(i)] = out.log_scale[i];
   out.log_scale = map.interpolated(log_scale);
-  for (Index& cone : out.cones) {
-    const auto at = std::find(placed.vertices.begin(), placed.vertices.end(), cone);
-    cone = at == placed.vertices.end() ? coned.vertex_of(cone) : cones.vertices[at - placed.vertices.begin()];
-  }
+  for (Index& cone : out.cones) cone = coned.vertex_of(cone);
   out.cut_edges = out.required_cuts = map.cuts(out.corner_uv, twin);
   out.flipped.clear();
   out.wrong_angle_sums.clear();
@@ -254,19 +243,22 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
     return lsgp::parameterize(kept_->surface, cones, options, {}, progress);
   }
   require_valid(kept_->surface, cones);
-  ConedSurface coned(thinned, kept_->surface.positions, kept_->fixed, kept_->vertex_of_node, kept_->node,
-                     cones.vertices);
-  Cones placed{{}, cones.angles};
-  for (const Index v : cones.vertices) placed.vertices.push_back(coned.add(v, thinned.place[v]));
+  const ConedSurface coned(thinned, kept_->surface.positions, kept_->fixed, kept_->vertex_of_node, kept_->node,
+                           cones.vertices);
+  Cones of_nodes = cones;
+  for (Index& v : of_nodes.vertices) v = coned.node(v);
   const Surface small = kept_->smaller(coned);
   Options of_small = options;
-  for (auto& [vertex, turning] : of_small.loop_turning) vertex = coned.node(vertex);
+  for (auto& [vertex, turning] : of_small.loop_turning) {
+    // Others are refused by their number.
+    if (vertex >= 0 && vertex < kept_->surface.positions.rows()) vertex = coned.node(vertex);
+  }
   const ThreadCount threads(options.threads);
   try {
-    Result of_surface = map_surface(small, placed, of_small, {}, OverlapSearch::left_out, progress);
-    return kept_->carried(coned, cones, placed, std::move(of_surface));
+    Result of_surface = map_surface(small, of_nodes, of_small, {}, OverlapSearch::left_out, progress);
+    return kept_->carried(coned, std::move(of_surface));
   } catch (const Error& error) {
-    throw Error(error.code(), error.what(), on_whole_surface(coned, error.elements()));
+    throw Error(error.code(), in_words(error).what(), on_whole_surface(coned, error.elements()));
   }
 } catch (const Error& error) {
   throw in_words(error);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/memory.hpp"
 #include "base/thread_team.hpp"
 
 namespace lsgp {
@@ -10,7 +11,8 @@ namespace lsgp {
 namespace {
 
 constexpr double same_position = 1e-7;  // of both sides of an edge without a cut, in the unit square
-constexpr int most_steps = 128;         // triangles that are visited on the way from one to another
+constexpr double bytes_a_corner = 24;
+constexpr int most_steps = 128;  // triangles that are visited on the way from one to another
 
 bool differ(Complex a, Complex b) { return std::abs(a - b) > same_position; }
 
@@ -24,24 +26,59 @@ CarriedMap::CarriedMap(const Triangles& triangles, const ThinnedSurface& thinned
       position_(position),
       is_on_cut_(thinned.place.size(), 0),
       is_beside_cut_(refined.triangle_count(), 0),
+      is_added_(thinned.place.size(), 0),
       around_(thinned.place.size(), none),
-      of_vertex_(thinned.place.size()) {
+      of_vertex_(thinned.place.size()),
+      home_(triangles.rows()) {
+  require_memory(bytes_a_corner * static_cast<double>(triangles.size()));
   mark_cuts();
-  for_each_at_once(static_cast<Index>(thinned.place.size()), [&](Index v) {
+  place_vertices();
+  for_each_at_once(static_cast<Index>(triangles.rows()),
+                   [&](Index f) { home_[f] = find_home(thinned_.polygon.empty() ? f : thinned_.polygon[f]); });
+}
+
+void CarriedMap::place_vertices() {
+  for_each_at_once(static_cast<Index>(around_.size()), [&](Index v) {
     if (thinned_.place[v].triangle == none) return;
     const SurfacePlace at = refined_.locate(thinned_.place[v]);
     around_[v] = at.triangle;
     of_vertex_[v] = inside(at);
   });
   // Those that were added are corners again.
-  for (auto f = static_cast<Index>(thinned.triangles.rows()); f < refined.triangle_count(); ++f) {
-    if (refined.is_replaced(f)) continue;
-    for (int c = 0; c < 3; ++c) {
-      const Index v = refined.triangle(f)[static_cast<std::size_t>(c)];
-      around_[v] = f;
-      of_vertex_[v] = position_[3 * f + c];
+  for (auto f = static_cast<Index>(thinned_.triangles.rows()); f < refined_.triangle_count(); ++f) {
+    const Index v = refined_.corner_of(f, 0);
+    if (refined_.is_replaced(f)) continue;
+    is_added_[v] = 1;
+    around_[v] = f;
+    of_vertex_[v] = position_[3 * f];
+  }
+}
+
+// The refined triangle where a corner is that is none there, since it is on one side of all cuts.
+Index CarriedMap::find_home(Index f) const {
+  const Index kept = thinned_.kept[f];
+  if (kept != none) return refined_.locate({kept, {1.0 / 3, 1.0 / 3, 1.0 / 3}}).triangle;
+  Index added = none, other = none;
+  for (int c = 0; c < 3; ++c) {
+    const Index v = triangles_(f, c);
+    if (is_added_[v]) {
+      added = v;
+    } else if (thinned_.place[v].corner() == none) {
+      return around_[v];
+    } else {
+      other = v;
     }
   }
+  return around_added(added, other);
+}
+
+// A triangle at an added vertex, that with another corner if there is one.
+Index CarriedMap::around_added(Index vertex, Index corner) const {
+  for (auto f = static_cast<Index>(thinned_.triangles.rows()); corner != none && f < refined_.triangle_count(); ++f) {
+    if (refined_.is_replaced(f) || refined_.corner_of(f, 0) != vertex) continue;
+    if (refined_.corner_of(f, 1) == corner || refined_.corner_of(f, 2) == corner) return f;
+  }
+  return around_[vertex];
 }
 
 void CarriedMap::mark_cuts() {
@@ -63,12 +100,6 @@ Complex CarriedMap::inside(const SurfacePlace& place) const {
   // Exactly, where it is a corner.
   if (place.corner() != none) return position_[h + place.corner()];
   return place.share[0] * position_[h] + place.share[1] * position_[h + 1] + place.share[2] * position_[h + 2];
-}
-
-Index CarriedMap::home(Index f) const {
-  const Index anchor = thinned_.anchor[f];
-  if (anchor >= 0) return around_[anchor];
-  return refined_.locate({-1 - anchor, {1.0 / 3, 1.0 / 3, 1.0 / 3}}).triangle;
 }
 
 // The vertex's position continued from a triangle to the one it is on, on the shortest way.
@@ -110,7 +141,7 @@ Complex CarriedMap::seen_from(Index home, Index vertex) const {
 CornerUv CarriedMap::corner_uv() const {
   CornerUv out(triangles_.size(), 2);
   for_each_at_once(static_cast<Index>(triangles_.rows()), [&](Index f) {
-    const Index from = home(f);
+    const Index from = home_[f];
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index v = triangles_.data()[h];
       const bool is_near = around_[v] != from && (is_beside_cut_[from] || is_beside_cut_[around_[v]]);
@@ -126,7 +157,7 @@ VertexPairs CarriedMap::cuts(const CornerUv& uv, const PerHalfedge<Index>& twin)
   const auto at = [&](Index h) { return Complex(uv(h, 0), uv(h, 1)); };
   Array<Index> ends;
   for (Index h = 0; h < ssize(twin); ++h) {
-    if (twin[h] < h || !is_beside_cut_[home(h / 3)]) continue;
+    if (twin[h] < h || !is_beside_cut_[home_[h / 3]]) continue;
     if (!differ(at(h), at(next(twin[h]))) && !differ(at(next(h)), at(twin[h]))) continue;
     ends.push_back(triangles_.data()[h]);
     ends.push_back(triangles_.data()[next(h)]);

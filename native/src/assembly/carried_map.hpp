@@ -8,9 +8,9 @@
 
 namespace lsgp {
 
-// Every triangle is mapped as a continuation from where its anchor is, so that none is torn by a cut that crosses it:
-// what is across the cut is moved by the cut's transition. Cuts then run along the edges beside those of the thinned
-// surface.
+// Every triangle is mapped as a continuation from where one of its corners is, its home, so that none is torn by a cut
+// that crosses it: what is across the cut is moved by the cut's transition. Cuts then run along the edges beside those
+// of the thinned surface.
 class CarriedMap {
  public:
   // triangles: (m, 3) of the whole surface.  position: of the corners of the refined triangles, not finite where not
@@ -21,7 +21,7 @@ class CarriedMap {
   // (3m, 2)
   CornerUv corner_uv() const;
   // Of those triangles: the refined one that determines where it is.
-  Index home(Index f) const;
+  Index home(Index f) const { return home_[f]; }
   // The edges between differently placed triangles.  twin: of the whole surface.
   VertexPairs cuts(const CornerUv& uv, const PerHalfedge<Index>& twin) const;
   // The linear interpolation of values at the vertices that are left, (n).
@@ -29,6 +29,9 @@ class CarriedMap {
 
  private:
   void mark_cuts();
+  void place_vertices();
+  Index find_home(Index f) const;
+  Index around_added(Index vertex, Index corner) const;
   Complex inside(const SurfacePlace& place) const;
   Complex seen_from(Index home, Index vertex) const;
 
@@ -38,8 +41,10 @@ class CarriedMap {
   const PerHalfedge<Complex>& position_;
   PerVertex<char> is_on_cut_;
   PerTriangle<char> is_beside_cut_;  // of the refined triangles
+  PerVertex<char> is_added_;         // to the thinned surface
   PerVertex<Index> around_;          // the refined triangle that each vertex is on
   PerVertex<Complex> of_vertex_;     // its position there
+  PerTriangle<Index> home_;
 };
 
 }  // namespace lsgp

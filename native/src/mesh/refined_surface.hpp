@@ -16,18 +16,8 @@ class RefinedSurface {
   RefinedSurface(const ThinnedSurface& thinned, const Positions& positions, const PerHalfedge<char>& fixed);
 
   // Adds a vertex at its place, joined to about six others, since a cone with few triangles around it cannot have large
-  // angles; unless a corner that is near it serves as well.  may_be: whether a vertex does.  Returns the one that is
-  // there.
-  template <typename Predicate>
-  Index add(Index vertex, const SurfacePlace& place, const Predicate& may_be) {
-    const SurfacePlace at = locate(place);
-    for (int c = 0; c < 3; ++c) {
-      const Index corner = corner_of(at.triangle, c);
-      if (at.share[c] > share_at_corner && may_be(corner)) return corner;
-    }
-    insert(vertex, at);
-    return vertex;
-  }
+  // angles.
+  void add(Index vertex, const SurfacePlace& place) { insert(vertex, locate(place)); }
 
   // The place on the triangles that have replaced one of the thinned surface's.
   SurfacePlace locate(SurfacePlace place) const;
@@ -40,7 +30,6 @@ class RefinedSurface {
   Index thinned_at(Index f) const { return thinned_at_[f]; }  // the thinned surface's triangle about where it is
 
  private:
-  static constexpr double share_at_corner = 0.9;
   using Point = Eigen::Vector2d;
 
   // The triangles around an added vertex, in the plane with that at 0.

@@ -96,13 +96,12 @@ class Thinning {
     }
     out.triangles.resize(count, 3);
     out.twin.resize(3 * count);
-    out.anchor.resize(source.rows());
+    // One that has lost no corner has never been in a ring.
+    const auto is_left = [&](Index v) { return place_[v].triangle == none; };
+    out.kept.assign(source.rows(), none);
     for (Index f = 0; f < source.rows(); ++f) {
-      const auto is_removed = [&](Index v) { return place_[v].triangle != none; };
-      const Index* const begin = source.row(f).data();
-      const Index* const removed = std::find_if(begin, begin + 3, is_removed);
-      // One that has lost no corner has never been in a ring.
-      out.anchor[f] = removed == begin + 3 ? -1 - row[f] : *removed;
+      const Index* const corners = source.row(f).data();
+      if (std::all_of(corners, corners + 3, is_left)) out.kept[f] = row[f];
     }
     out.place = place_;
     for (SurfacePlace& place : out.place) {
@@ -370,8 +369,7 @@ class Thinning {
   Array<Point> at_;
 };
 
-// Triangles between which no cut may run get the first one's anchor.
-void join_polygons(const Surface& surface, const EdgeTable& edges, PerTriangle<Index>& anchor) {
+PerTriangle<Index> find_polygons(const Surface& surface, const EdgeTable& edges) {
   Array<char> is_cuttable(edges.count(), 0);
   for (Eigen::Index row = 0; row < surface.edges->rows(); ++row) {
     const Index edge = edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1));
@@ -384,7 +382,9 @@ void join_polygons(const Surface& surface, const EdgeTable& edges, PerTriangle<I
       polygons.unite(edges.halfedge(edge, 0) / 3, edges.halfedge(edge, i) / 3);
     }
   }
-  for (Index f = 0; f < ssize(anchor); ++f) anchor[f] = anchor[polygons.find(f)];
+  PerTriangle<Index> first(surface.triangles.rows());
+  for (Index f = 0; f < ssize(first); ++f) first[f] = polygons.find(f);
+  return first;
 }
 
 }  // namespace
@@ -394,7 +394,7 @@ ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, Index triang
   Thinning thinning(surface, find_twins(surface, edges));
   thinning.remove(triangles);
   ThinnedSurface out = thinning.read(surface.triangles);
-  if (surface.edges) join_polygons(surface, edges, out.anchor);
+  if (surface.edges) out.polygon = find_polygons(surface, edges);
   return out;
 }
 

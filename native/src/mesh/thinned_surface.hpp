@@ -22,9 +22,9 @@ struct ThinnedSurface {
   Triangles triangles;            // (t, 3) of the surface's own vertices, those that are left
   PerHalfedge<Index> twin;        // of these triangles; none on boundaries, and where the surface is not a manifold
   PerVertex<SurfacePlace> place;  // (n) on these triangles; none of vertices without a triangle
-  // (m) of each triangle of the surface a corner that has been removed, whose place tells where it is, or
-  // -1 - (the triangle that it still is); the same for all triangles of a polygon, which no cut runs through.
-  PerTriangle<Index> anchor;
+  PerTriangle<Index> kept;        // (m) what each triangle of the surface is among these; none of those that are gone
+  // (m) the first triangle of each one's polygon, which no cut runs through; empty if all are triangles
+  PerTriangle<Index> polygon;
 };
 
 // Removes vertices in the interior and retriangulates the holes, until about so many triangles are left; more if the
