@@ -2,6 +2,7 @@
 #include "assembly/carried_map.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/memory.hpp"
 #include "base/thread_team.hpp"
@@ -102,6 +103,55 @@ Complex CarriedMap::inside(const SurfacePlace& place) const {
   return place.share[0] * position_[h] + place.share[1] * position_[h + 1] + place.share[2] * position_[h + 2];
 }
 
+// A position beyond a halfedge as continued from this side of it.
+Complex CarriedMap::across(Index h, Complex z) const {
+  const Index twin = refined_.twin(h);
+  const Complex tail = position_[h], head = position_[next(h)];
+  const Complex tail_across = position_[next(twin)], head_across = position_[twin];
+  if (!differ(tail, tail_across) && !differ(head, head_across)) return z;
+  return tail + (head - tail) / (head_across - tail_across) * (z - tail_across);
+}
+
+// The same around a corner of the triangle, which may be a cone: on the side on which the angle is smaller.
+Complex CarriedMap::seen_around(Index corner, Index home, Index vertex) const {
+  const Complex middle = (position_[3 * home] + position_[3 * home + 1] + position_[3 * home + 2]) / 3.0;
+  std::optional<Complex> nearest;
+  double least_turn = 0;
+  for (const bool is_left : {true, false}) {
+    Index crossed[most_steps];
+    int count = 0;
+    double turn = 0;
+    Complex toward = middle;
+    for (Index f = home; count < most_steps;) {
+      const auto& corners = refined_.triangle(f);
+      const auto place_of = [&](Index v) {
+        return static_cast<Index>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+      };
+      const Index at = place_of(vertex), out = 3 * f + place_of(corner);
+      const auto turn_to = [&](Complex z) {
+        return std::abs(std::arg((z - position_[out]) / (toward - position_[out])));
+      };
+      if (f == around_[vertex] || at < 3) {
+        Complex z = at < 3 ? position_[3 * f + at] : of_vertex_[vertex];
+        if (vertex != corner) turn += turn_to(z);
+        while (count > 0) z = across(crossed[--count], z);
+        if (!nearest || turn < least_turn) {
+          nearest = z;
+          least_turn = turn;
+        }
+        break;
+      }
+      crossed[count++] = is_left ? prev(out) : out;
+      const Index twin = refined_.twin(crossed[count - 1]);
+      if (twin == none || twin / 3 == home) break;
+      turn += turn_to(position_[is_left ? prev(out) : next(out)]);
+      toward = position_[is_left ? next(twin) : twin];
+      f = twin / 3;
+    }
+  }
+  return nearest ? *nearest : seen_from(home, vertex);
+}
+
 // The vertex's position continued from a triangle to the one it is on, on the shortest way.
 Complex CarriedMap::seen_from(Index home, Index vertex) const {
   struct Step {
@@ -119,12 +169,7 @@ Complex CarriedMap::seen_from(Index home, Index vertex) const {
       Complex z =
           at != corners.end() ? position_[3 * f + static_cast<Index>(at - corners.begin())] : of_vertex_[vertex];
       for (int k = i; k > 0; k = steps[k].before) {
-        const Index h = steps[k].through, twin = refined_.twin(h);
-        const Complex tail = position_[h], head = position_[next(h)];
-        const Complex tail_across = position_[next(twin)], head_across = position_[twin];
-        if (differ(tail, tail_across) || differ(head, head_across)) {
-          z = tail + (head - tail) / (head_across - tail_across) * (z - tail_across);
-        }
+        z = across(steps[k].through, z);
       }
       return z;
     }
@@ -142,10 +187,13 @@ CornerUv CarriedMap::corner_uv() const {
   CornerUv out(triangles_.size(), 2);
   for_each_at_once(static_cast<Index>(triangles_.rows()), [&](Index f) {
     const Index from = home_[f];
+    const auto& corners = refined_.triangle(from);
+    const Index* const own = triangles_.row(f).data();
+    const Index* const pivot = std::find_first_of(own, own + 3, corners.begin(), corners.end());
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index v = triangles_.data()[h];
       const bool is_near = around_[v] != from && (is_beside_cut_[from] || is_beside_cut_[around_[v]]);
-      const Complex z = is_near ? seen_from(from, v) : of_vertex_[v];
+      const Complex z = !is_near ? of_vertex_[v] : pivot == own + 3 ? seen_from(from, v) : seen_around(*pivot, from, v);
       out(h, 0) = z.real();
       out(h, 1) = z.imag();
     }
@@ -157,10 +205,13 @@ VertexPairs CarriedMap::cuts(const CornerUv& uv, const PerHalfedge<Index>& twin)
   const auto at = [&](Index h) { return Complex(uv(h, 0), uv(h, 1)); };
   Array<Index> ends;
   for (Index h = 0; h < ssize(twin); ++h) {
-    if (twin[h] < h || !is_beside_cut_[home_[h / 3]]) continue;
+    if (twin[h] < h) continue;
+    const Index tail = triangles_.data()[h], head = triangles_.data()[next(h)];
+    const Index near[] = {home_[h / 3], home_[twin[h] / 3], around_[tail], around_[head]};
+    if (std::none_of(near, near + 4, [&](Index f) { return is_beside_cut_[f] != 0; })) continue;
     if (!differ(at(h), at(next(twin[h]))) && !differ(at(next(h)), at(twin[h]))) continue;
-    ends.push_back(triangles_.data()[h]);
-    ends.push_back(triangles_.data()[next(h)]);
+    ends.push_back(tail);
+    ends.push_back(head);
   }
   return Eigen::Map<const VertexPairs>(ends.data(), ssize(ends) / 2, 2);
 }

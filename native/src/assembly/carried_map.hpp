@@ -34,6 +34,8 @@ class CarriedMap {
   Index around_added(Index vertex, Index corner) const;
   Complex inside(const SurfacePlace& place) const;
   Complex seen_from(Index home, Index vertex) const;
+  Complex seen_around(Index corner, Index home, Index vertex) const;
+  Complex across(Index h, Complex z) const;
 
   const Triangles& triangles_;
   const ThinnedSurface& thinned_;

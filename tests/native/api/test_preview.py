@@ -75,7 +75,7 @@ def test_a_preview_looks_like_the_map(make: object) -> None:
     angle = dict(zip(shown.cones.tolist(), shown.cone_angles, strict=True))
     assert max(abs(angle[v] - a) for v, a in zip(exact.cones.tolist(), exact.cone_angles, strict=True)) < 0.15
     # Between the two routes of a cut the layout is on the other side of it.
-    assert np.median(distances(exact.corner_uv, shown.corner_uv)) < 0.005
+    assert np.median(distances(exact.corner_uv, shown.corner_uv)) < 0.01
     assert abs(shown.distortion.l2_stretch - exact.distortion.l2_stretch) < 0.02
     assert abs(shown.log_scale - exact.log_scale).mean() < 0.03
     assert shown.solved.all()
@@ -99,14 +99,22 @@ def test_the_angles_around_cones_and_all_other_vertices_close(make: object) -> N
 
 def test_cuts_are_closed_paths_between_cones_along_edges_that_may_be_cut() -> None:
     mesh = meshes.bumpy_sphere(5)
-    edges = meshes.edges_of(mesh.triangles)
-    # Two triangles each are a quad.
-    inside = pairs(np.sort(mesh.triangles[::4][:, :2], axis=1))
-    cuttable = np.array([edge for edge in edges.tolist() if tuple(edge) not in inside], np.int32)
+    # Most triangles are halves of quads.
+    sides: dict[tuple[int, int], list[int]] = {}
+    for f, triangle in enumerate(np.sort(mesh.triangles, axis=1).tolist()):
+        for edge in ((triangle[1], triangle[2]), (triangle[0], triangle[2]), (triangle[0], triangle[1])):
+            sides.setdefault(edge, []).append(f)
+    free, cuttable = np.ones(len(mesh.triangles), bool), []
+    for edge, halves in sides.items():
+        if free[halves].all():
+            free[halves] = False
+        else:
+            cuttable.append(edge)
     surface = surface_of(mesh, edges=cuttable)
     cones = moved(mesh)
     result = lsgp.Preview(surface, triangles=REDUCED).parameterize(cones, None, RAW)
     assert pairs(result.cut_edges) <= pairs(cuttable)
+    assert free.mean() < 0.2
     ends = np.bincount(np.ravel(result.cut_edges), minlength=len(mesh.positions))
     assert set(np.flatnonzero(ends == 1)) <= set(cones.tolist())
     assert pairs(np.concatenate([np.c_[path[:-1], path[1:]] for path in result.cut_paths])) == pairs(result.cut_edges)
