@@ -34,7 +34,9 @@ class Follower:
 
     def follow(self) -> bool:
         """Begin the next step where one is due, and show a finished one.  Returns whether one was shown or failed."""
-        previews = self._dragging and self.outdated and bool(self._session.cones.touched) and self._session.has_previews()
+        previews = (
+            self._dragging and self.outdated and bool(self._session.cones.touched) and self._session.has_previews()
+        )
         if previews and self._computation is not None and not self._is_preview:
             # An exact map that is no longer the one of the cones would only delay the next preview.
             self._abandon()

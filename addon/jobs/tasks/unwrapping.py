@@ -242,9 +242,7 @@ def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
     ]
 
 
-def unwrap(
-    task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | lsgp.Preview | None = None
-) -> Unwrapped:
+def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | lsgp.Preview | None = None) -> Unwrapped:
     """The map of one task.  Raises LsgpError.
 
     solver: for the region's surface with its costs of cuts, to reuse what it has factorized; or to approximate the map
