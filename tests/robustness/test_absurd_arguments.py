@@ -56,6 +56,11 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.Solver(WHOLE).parameterize,
         {name: CALL[name] for name in CALL if name != "surface"} | {"pins": None},
     ),
+    "Preview": (lsgp.Preview, {"surface": WHOLE, "triangles": 100, "progress": None}),
+    "Preview.parameterize": (
+        lsgp.Preview(WHOLE, triangles=100).parameterize,
+        {name: CALL[name] for name in CALL if name != "surface"},
+    ),
     "auto_unwrap": (
         lsgp.auto_unwrap,
         {
@@ -279,7 +284,7 @@ def test_all_public_functions_and_parameters_are_listed() -> None:
             for name, value in own
             if inspect.isfunction(value) and value.__module__ == module.__name__ and not name.startswith("_")
         }
-    assert public | {"Solver.parameterize"} == FUNCTIONS.keys()
+    assert public | {"Solver.parameterize", "Preview.parameterize"} == FUNCTIONS.keys()
     for function, accepted in FUNCTIONS.values():
         assert set(inspect.signature(function).parameters) == set(accepted)
         function(**accepted)

@@ -3,7 +3,7 @@
 
 speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
 seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. threads: two threads
-beside one. rounding: what seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's
+beside one. previews: those of a dragged cone beside the exact map. rounding: what seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's
 Minimum Stretch and libigl's SLIM. files: reading and writing, the command line from file to file beside that of BFF,
 and the preset Bake beside xatlas.
 
@@ -28,12 +28,13 @@ from benchmark_cases import MESHES, ROOT, SHARED, dense_cases, growing_cases, sm
 from benchmark_files import measure_command, measure_files, measure_xatlas
 from benchmark_goals import goals
 from benchmark_options import measure_low_stretch, measure_rounding, measure_shares, measure_slim, measure_threads
+from benchmark_previews import PREVIEWS, measure_preview, preview_cases
 from benchmark_speed import Measured, measure, plot, ratio_rows, stage_rows, time_rows
 from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
 
 LARGE, MANY = 200_000, 100
-TABLES = ("speed", "threads", "rounding", "shares", "stretch", "files")
-ON_PAGE = ("speed", "threads", "stretch", "files")
+TABLES = ("speed", "threads", "previews", "rounding", "shares", "stretch", "files")
+ON_PAGE = ("speed", "threads", "previews", "stretch", "files")
 PAGE = ROOT / "docs" / "reference" / "benchmark.md"
 PLOT = ROOT / "docs" / "images" / "benchmark.svg"
 
@@ -140,6 +141,9 @@ def main() -> None:
         large = [case for case in growing_cases(arguments.largest) if len(case.triangles) >= LARGE]
         table = as_table(measure_threads(case, repetitions) for case in large if len(case.cones) < MANY)
         show(f"{THREADS}\n{table}")
+    if "previews" in arguments.tables:
+        table = as_table(measure_preview(case, repetitions) for case in preview_cases(arguments.largest))
+        show(f"{PREVIEWS}\n{table}")
     small = small_cases(arguments.meshes)
     if "rounding" in arguments.tables:
         print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
@@ -183,7 +187,7 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
 def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
-Written by `python tools/benchmark/benchmark.py --tables speed threads stretch files --write`. All methods take arrays
+Written by `python tools/benchmark/benchmark.py --tables speed threads previews stretch files --write`. All methods take arrays
 and return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians
 of repetitions. Compare them with each other, not with those of another machine.
 
