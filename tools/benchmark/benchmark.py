@@ -3,9 +3,9 @@
 
 speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
 seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. threads: two threads
-beside one. previews: those of a dragged cone beside the exact map. rounding: what seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's
-Minimum Stretch and libigl's SLIM. files: reading and writing, the command line from file to file beside that of BFF,
-and the preset Bake beside xatlas.
+beside one. previews: those of a dragged cone beside the exact map. rounding: what seamless layouts add. shares: checks
+and repair. stretch: low stretch beside Blender's Minimum Stretch and libigl's SLIM. files: reading and writing, the
+command line from file to file beside that of BFF, and the preset Bake beside xatlas.
 
 But for files, all get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and
 measures the map. Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in
@@ -187,9 +187,9 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
 def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
-Written by `python tools/benchmark/benchmark.py --tables speed threads previews stretch files --write`. All methods take arrays
-and return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians
-of repetitions. Compare them with each other, not with those of another machine.
+Written by `python tools/benchmark/benchmark.py --tables speed threads previews stretch files --write`. All methods take
+arrays and return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads,
+medians of repetitions. Compare them with each other, not with those of another machine.
 
 - **lsgp**: given cones, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
 - **angle edited**, **cone moved**: a repeated call of `lsgp.Solver`, which caches unchanged data.

@@ -28,6 +28,11 @@ REVIEWED = {
     "assembly/assembly.cpp": [
         ("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)
     ],
+    "assembly/carried_map.cpp": [
+        ("for (Index f = home; count < most_steps;)", "a fixed number of steps", SHORT),
+        ("while (count > 0)", "the steps before", SHORT),
+        ("for (int k = i; k > 0; k = steps[k].before)", LINKED, SHORT),
+    ],
     "assembly/cut_paths.cpp": [
         ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
     ],
@@ -184,6 +189,16 @@ REVIEWED = {
     ],
     "search/cone_set.cpp": [
         ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
+    ],
+    "mesh/refined_surface.cpp": [
+        ("while (is_replaced(place.triangle))", "triangles are replaced by later ones", SHORT),
+    ],
+    "mesh/thinned_surface.cpp": [
+        ("for (int pass = 1; count > most && !left_.empty(); ++pass)", "the second pass that removes no vertex", OWN),
+        *[("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT)] * 2,
+        ("while (h != outgoing_[a])", AROUND_A_VERTEX, SHORT),
+        ("while (polygon_.size() > 3)", "each round cuts off a corner", SHORT),
+        ("for (Index point = first_point_[f]; point != none; point = next_point_[point])", LINKED, SHORT),
     ],
     "mesh/coarse_surface.cpp": [
         (
