@@ -20,7 +20,7 @@ namespace lsgp {
 
 namespace {
 
-// The edges of thinned triangles that may not be divided.
+// The edges of thinned triangles that stay when vertices are added.
 PerHalfedge<char> fixed_edges(const Surface& surface, const EdgeTable& edges, const ThinnedSurface& thinned) {
   PerEdge<char> is_fixed(edges.count(), 0);
   for (const VertexPairs* pairs : {&surface.seams, &surface.borders, &surface.features}) {
@@ -84,7 +84,7 @@ class ConedSurface {
   RefinedSurface refined;
 
  private:
-  Array<Index> vertex_of_node_;   // those that were added last
+  Array<Index> vertex_of_node_;   // cones that were added come last
   PerVertex<Index> node_;         // none of vertices that are not there
   Array<Index> triangle_of_row_;  // of `refined`
 };

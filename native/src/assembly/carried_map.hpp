@@ -14,7 +14,7 @@ namespace lsgp {
 class CarriedMap {
  public:
   // triangles: (m, 3) of the whole surface.  position: of the corners of the refined triangles, not finite where not
-  // solved, of those that are replaced nothing.
+  // solved; of those that are replaced it is not read.
   CarriedMap(const Triangles& triangles, const ThinnedSurface& thinned, const RefinedSurface& refined,
              const PerHalfedge<Complex>& position);
 
