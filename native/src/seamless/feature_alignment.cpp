@@ -46,8 +46,8 @@ Array<std::pair<Index, Index>> ranks_of(const Array<FeatureLine>& lines) {
 
 class FeatureAligner {
  public:
-  FeatureAligner(const FeatureTask& task, const Eigen::VectorXcd& start, double most_l2)
-      : task_(task), unaligned_(start), most_l2_(most_l2) {}
+  FeatureAligner(const FeatureTask& task, const Eigen::VectorXcd& start, const AlignmentBounds& bounds)
+      : task_(task), unaligned_(start), bounds_(bounds) {}
 
   FeatureAlignment align_all(const PerHalfedge<char>& feature);
 
@@ -60,17 +60,20 @@ class FeatureAligner {
   bool keeps_lengths(const FeatureLine& line, const Eigen::VectorXcd& position) const;
   void add(Array<FeatureLine> lines);
   void add_trimmed();
+  void release_all(const Array<FeatureLine>& lines, ReleaseReason reason);
   // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
   std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, Array<Index>& defects);
   double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
+  bool may_suffice() const { return possible_ >= out_.least_length; }
   DegreesOfFreedom free_with(const Array<FeatureLine>& lines) const {
     return free_along(task_.surface, task_.reduction, edges_of(lines));
   }
 
   const FeatureTask& task_;
   Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
-  const double most_l2_;
+  const AlignmentBounds bounds_;
   Jacobians jacobians_;           // of it
+  double possible_ = 0;           // length of the lines that are chosen, or can still be
   int left_ = 0, fits_left_ = 0;  // attempts, and fits before them
   Array<FeatureLine> trimmed_;    // released at defects
   FeatureAlignment out_;
@@ -90,11 +93,18 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   const FeatureLines traced = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_);
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;
   jacobians_ = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
+  const auto [length_of_marked, length_of_creases] = length_of(traced.straight);
+  if (length_of_marked == 0) out_.least_length = bounds_.least_of_creases * length_of_creases;
   Array<FeatureLine> lines = compatible(traced.straight);
+  possible_ = total_length(lines);
   const auto others = std::find_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return !line.is_marked; });
   add({lines.begin(), others});
   add({others, lines.end()});
   add_trimmed();
+  if (total_length(out_.lines) < out_.least_length) {
+    release_all(out_.lines, ReleaseReason::contradiction);
+    out_.lines.clear();
+  }
   return std::move(out_);
 }
 
@@ -106,10 +116,12 @@ Array<FeatureLine> FeatureAligner::compatible(const Array<FeatureLine>& lines) {
   for (const auto& [begin, end] : ranks_of(lines)) {
     Array<Index> numbers(end - begin);
     std::iota(numbers.begin(), numbers.end(), begin);
+    possible_ = total_length(lines);
     Array<char> by_halves = chosen;
     add_compatible(lines, numbers.data(), numbers.data() + numbers.size(), by_halves);
     if (std::count(by_halves.begin() + begin, by_halves.begin() + end, 0) > 0) {
       const int left = std::exchange(fits_left_, most / 2);
+      possible_ = total_length(lines);
       Array<char> by_fault = chosen;
       add_faultless(lines, begin, end, by_fault);
       fits_left_ = left;
@@ -142,10 +154,11 @@ void FeatureAligner::add_faultless(const Array<FeatureLine>& lines, Index begin,
   add_compatible(lines, released.data(), released.data() + released.size(), chosen);
 }
 
-// Chooses as many of these as do not contradict chosen ones, the first before others: halves that do are divided again.
+// Chooses as many of these as do not contradict chosen ones, the first before others: halves that do are divided again,
+// as long as the lines that remain may suffice.
 void FeatureAligner::add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end,
                                     Array<char>& chosen) {
-  if (begin == end || fits_left_ <= 0) return;
+  if (begin == end || fits_left_ <= 0 || !may_suffice()) return;
   Array<char> more = chosen;
   for (const Index* k = begin; k < end; ++k) more[*k] = 1;
   if (contradicting(lines, more).empty()) {
@@ -154,6 +167,8 @@ void FeatureAligner::add_compatible(const Array<FeatureLine>& lines, const Index
     const Index* const middle = begin + (end - begin) / 2;
     add_compatible(lines, begin, middle, chosen);
     add_compatible(lines, middle, end, chosen);
+  } else {
+    possible_ -= lines[*begin].length;
   }
 }
 
@@ -218,7 +233,7 @@ void FeatureAligner::add(Array<FeatureLine> lines) {
   // Halves need attempts, too.
   const int most = left_ / 2;
   for (int trimmings = 0; reason; ++trimmings) {
-    if (lines.empty() || left_ == 0) return;
+    if (lines.empty() || left_ == 0 || !may_suffice()) return;
     const Array<Index> before = std::exchange(failure.vertices, {});
     reason = align(lines, failure.vertices);
     const bool is_stuck = failure.vertices == before;
@@ -227,10 +242,11 @@ void FeatureAligner::add(Array<FeatureLine> lines) {
     if (!trim(task_.surface, failure, lines, &trimmed_)) break;
   }
   if (!reason) return;
-  for (const FeatureLine& line : lines) {
-    for (const Index h : line.halfedges) release(h, *reason, out_.reasons);
+  release_all(lines, *reason);
+  if (lines.size() == 1) {
+    possible_ -= lines.front().length;
+    return;
   }
-  if (lines.size() == 1) return;
   const auto middle = lines.begin() + ssize(lines) / 2;
   add({lines.begin(), middle});
   add({middle, lines.end()});
@@ -244,9 +260,15 @@ void FeatureAligner::add_trimmed() {
   });
   left_ = std::min(left_, retried_triangles / task_.surface.mesh.triangle_count());
   for (const FeatureLine& line : lines) {
-    if (left_ <= 0) return;
+    if (left_ <= 0 || !may_suffice()) return;
     Array<Index> defects;
-    align({line}, defects);
+    if (align({line}, defects)) possible_ -= line.length;
+  }
+}
+
+void FeatureAligner::release_all(const Array<FeatureLine>& lines, ReleaseReason reason) {
+  for (const FeatureLine& line : lines) {
+    for (const Index h : line.halfedges) release(h, reason, out_.reasons);
   }
 }
 
@@ -262,7 +284,7 @@ std::optional<ReleaseReason> FeatureAligner::align(const Array<FeatureLine>& lin
     return ReleaseReason::contradiction;
   }
   if (l2_stretch(task_.surface.geometry, measure_jacobians(task_.surface, task_.surface.cut_mesh, *position)) >
-      most_l2_) {
+      bounds_.most_l2) {
     return ReleaseReason::stretch;
   }
   // Unfolding may turn a map in which much was flipped upside down.
@@ -287,8 +309,8 @@ double FeatureAligner::length_along(const Array<FeatureLine>& lines, const Eigen
 }  // namespace
 
 FeatureAlignment align_with_axes(const FeatureTask& task, const PerHalfedge<char>& feature,
-                                 const Eigen::VectorXcd& start, double most_l2) {
-  return FeatureAligner(task, start, most_l2).align_all(feature);
+                                 const Eigen::VectorXcd& start, const AlignmentBounds& bounds) {
+  return FeatureAligner(task, start, bounds).align_all(feature);
 }
 
 }  // namespace lsgp

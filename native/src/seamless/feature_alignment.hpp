@@ -17,12 +17,17 @@ struct FeatureAlignment {
   Array<FeatureLine> lines;
   Eigen::VectorXcd start;              // (copies) the map with these lines along the axes; empty without any
   PerHalfedge<ReleaseReason> reasons;  // of the others; meaningless without features
+  double least_length = 0;             // of lines, with which they give a texture its direction
 };
 
-// feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice.
-// most_l2: the largest stretch that features may cost. As many as possible run along the axes, marked ones before
-// others, those of least cost first.
+struct AlignmentBounds {
+  double most_l2;           // stretch that features may cost
+  double least_of_creases;  // share of their length: where nothing is marked and fewer can run along the axes, none do
+};
+
+// feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice. As many
+// as possible run along the axes, marked ones before others, those of least cost first.
 FeatureAlignment align_with_axes(const FeatureTask& task, const PerHalfedge<char>& feature,
-                                 const Eigen::VectorXcd& start, double most_l2);
+                                 const Eigen::VectorXcd& start, const AlignmentBounds& bounds);
 
 }  // namespace lsgp

@@ -199,6 +199,8 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
 // Leaves features_ empty on soft surfaces without marked features and where no feature can be aligned.
 void LayoutQuantizer::align_features() {
   const double most_growth = demands_.whole_features ? 1.2 : 1.1;  // of the L2 stretch
+  // Quads may follow any creases; a texture gets its direction from most of them.
+  const double least_of_creases = demands_.whole_features ? 0 : 0.75;
   const PerHalfedge<char> feature =
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
@@ -207,7 +209,7 @@ void LayoutQuantizer::align_features() {
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
   const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};
   std::optional<FeatureAlignment>& alignment = demands_.alignment;
-  if (!alignment) alignment = align_with_axes(task, feature, start_, most_l2_);
+  if (!alignment) alignment = align_with_axes(task, feature, start_, {most_l2_, least_of_creases});
   release_reasons_ = alignment->reasons;
   if (alignment->lines.empty()) return;
   features_ = std::make_unique<FeatureLayout>(task, *alignment);
