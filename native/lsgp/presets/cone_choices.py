@@ -242,11 +242,11 @@ def _best_along(
     surface = maps.solver.surface
     components = Components.of(surface)
     is_other = _have_other_cones(components, along[0], best[0])
-    gain = gains_features(components, along[1], best[1])
+    gain = gains_features(components, along[1], best[1], is_straightened)
     if not (is_straightened or gain[is_other].all()):
         # Along creases the usual one is stretched as well.
         best = maps.through(best[0], options, share_of(progress, 0.0, _TRYING))
-        gain = gains_features(components, along[1], best[1])
+        gain = gains_features(components, along[1], best[1], True)
     if gain[is_other].all():
         return along
     candidates = [along]

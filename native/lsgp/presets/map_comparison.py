@@ -187,7 +187,7 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     return (
         along.solved.tolist() == usual.solved.tolist()
         and defects(along) <= defects(usual)
-        and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
+        and along.distortion.l2_stretch <= _most_growth(feature_share(usual)) * usual.distortion.l2_stretch
         and runs_along_features(along)
     )
 
@@ -228,16 +228,25 @@ def reached_up_to(target: float, result: Result, options: Options) -> float:
     return target if options.mode == "low-stretch" else 0.0
 
 
-def gains_features(components: Components, along: Result, usual: Result) -> NDArray[np.bool_]:
-    """On which components the map through cones for features may replace the usual one, (c,), by the same measures."""
+def gains_features(components: Components, along: Result, usual: Result, is_straightened: bool) -> NDArray[np.bool_]:
+    """On which components the map through cones for features may replace the usual one, (c,), by the same measures.
+
+    is_straightened: whether features run along the lattice in the usual one as far as they can.
+    """
     shares, other_shares = (_feature_shares(components, result) for result in (along, usual))
     stretches, other_stretches = (components.stretches(result) for result in (along, usual))
     return (
         (shares >= np.maximum(other_shares, _LEAST_FEATURES))
         & (components.solved(along) == components.solved(usual))
         & (components.defects(along) <= components.defects(usual))
-        & (stretches <= _MOST_L2_FOR_FEATURES * other_stretches)
+        & (stretches <= (_most_growth(other_shares) if is_straightened else _MOST_L2_FOR_FEATURES) * other_stretches)
     )
+
+
+def _most_growth(share: FloatArray | float) -> FloatArray:
+    """Of the L2 stretch through cones for features, from a map with this share of features along the lattice: these cones
+    may cost a tenth, and features, where none are along it yet, another."""
+    return np.where(share >= _LEAST_FEATURES, 1.0, _MOST_L2_FOR_FEATURES) * _MOST_L2_FOR_FEATURES
 
 
 def costs_little(components: Components, symmetric: Result, usual: Result) -> NDArray[np.bool_]:

@@ -64,7 +64,7 @@ class FeatureAligner {
   // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
   std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, Array<Index>& defects);
   double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
-  bool may_suffice() const { return possible_ >= out_.least_length; }
+  bool may_suffice() const { return possible_ >= needed_; }
   DegreesOfFreedom free_with(const Array<FeatureLine>& lines) const {
     return free_along(task_.surface, task_.reduction, edges_of(lines));
   }
@@ -73,6 +73,7 @@ class FeatureAligner {
   Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
   const AlignmentBounds bounds_;
   Jacobians jacobians_;           // of it
+  double needed_ = 0;             // length of lines
   double possible_ = 0;           // length of the lines that are chosen, or can still be
   int left_ = 0, fits_left_ = 0;  // attempts, and fits before them
   Array<FeatureLine> trimmed_;    // released at defects
@@ -94,16 +95,16 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;
   jacobians_ = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
   const auto [length_of_marked, length_of_creases] = length_of(traced.straight);
-  if (length_of_marked == 0) out_.least_length = bounds_.least_of_creases * length_of_creases;
+  if (length_of_marked == 0) needed_ = bounds_.least_of_creases * length_of_creases;
   Array<FeatureLine> lines = compatible(traced.straight);
   possible_ = total_length(lines);
   const auto others = std::find_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return !line.is_marked; });
   add({lines.begin(), others});
   add({others, lines.end()});
-  add_trimmed();
-  if (total_length(out_.lines) < out_.least_length) {
-    release_all(out_.lines, ReleaseReason::contradiction);
-    out_.lines.clear();
+  if (may_suffice()) {
+    add_trimmed();
+  } else {
+    release_all(std::exchange(out_.lines, {}), ReleaseReason::contradiction);
   }
   return std::move(out_);
 }
@@ -260,9 +261,9 @@ void FeatureAligner::add_trimmed() {
   });
   left_ = std::min(left_, retried_triangles / task_.surface.mesh.triangle_count());
   for (const FeatureLine& line : lines) {
-    if (left_ <= 0 || !may_suffice()) return;
+    if (left_ <= 0) return;
     Array<Index> defects;
-    if (align({line}, defects)) possible_ -= line.length;
+    align({line}, defects);
   }
 }
 

@@ -17,7 +17,6 @@ struct FeatureAlignment {
   Array<FeatureLine> lines;
   Eigen::VectorXcd start;              // (copies) the map with these lines along the axes; empty without any
   PerHalfedge<ReleaseReason> reasons;  // of the others; meaningless without features
-  double least_length = 0;             // of lines, with which they give a texture its direction
 };
 
 struct AlignmentBounds {

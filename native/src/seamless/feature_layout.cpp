@@ -56,7 +56,7 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const FeatureAlignment& al
       is_cone_(task.mark_cones()),
       reasons_(alignment.reasons),
       aligned_(alignment.lines),
-      least_length_(std::max(alignment.least_length, least_kept * total_length(aligned_))),
+      aligned_length_(total_length(aligned_)),
       start_(alignment.start) {
   find_coordinates();
   is_large_ = has_many_coordinates();
@@ -67,22 +67,21 @@ void FeatureLayout::find_loosened() {
   const Array<Index> defects = std::exchange(lattice_defects_, {});
   const int trimmings = trimmings_;
   Loosened trimmed{aligned_, start_, trimmings + 1};
-  // Layouts that keep less are not worth their time.
-  const auto is_enough = [&](const Array<FeatureLine>& lines) { return total_length(lines) > least_length_; };
-  if (trimmings >= 0 && trimmings < most_trimmings && trim(task_.surface, {defects}, trimmed.lines, nullptr) &&
-      is_enough(trimmed.lines)) {
+  if (trimmings >= 0 && trimmings < most_trimmings && trim(task_.surface, {defects}, trimmed.lines, nullptr)) {
     loosened_.push_back(std::move(trimmed));
   }
   if (trimmings > 0) return;
   Loosened shortened{aligned_, start_, -1};
   Array<FeatureLine>& lines = shortened.lines;
+  // Layouts that keep less are not worth their time.
+  const auto is_enough = [&] { return total_length(lines) > least_kept * aligned_length_; };
   lines.erase(std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.comes_last; }),
               lines.end());
-  if (lines.size() == aligned_.size() || !is_enough(lines)) {
+  if (lines.size() == aligned_.size() || !is_enough()) {
     lines = aligned_;
     lines.resize(5 * lines.size() / 6);
   }
-  if (is_enough(lines)) loosened_.push_back(std::move(shortened));
+  if (is_enough()) loosened_.push_back(std::move(shortened));
 }
 
 bool FeatureLayout::loosen() {

@@ -87,7 +87,7 @@ class FeatureLayout {
   const PerVertex<char> is_cone_;
   PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
-  const double least_length_;  // of lines that are kept
+  const double aligned_length_;  // before any was released for the lattice
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
   // Lengths of lines between cones, the lattice's, distances between lines, one of each line, and those along lines of
