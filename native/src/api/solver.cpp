@@ -15,6 +15,7 @@
 #include "kept/kept_components.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/directed_borders.hpp"
 #include "pipeline/mapping.hpp"
 #include "pipeline/said_once.hpp"
 #include "pipeline/wording.hpp"
@@ -96,6 +97,9 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
       const ProgressMonitor::Stage stage(monitor, "geometry");
       kept.geometry_of(i, result.warnings);
       if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
+      if (work.tasks[i].has_directed_borders) {
+        free_stretched_borders({component.mesh, kept.geometry(i)}, monitor, work.tasks[i]);
+      }
     }
     ComponentSystem& system = kept.system_of(i, options.factorization);
     ComponentMap map;

@@ -125,7 +125,8 @@ void hand_out_directions(const Positions& directions, const Options& options, Wo
     task.directions = directions_in_triangles(component.mesh, own);
     const std::optional<double> curvature = given_curvature(component.mesh, task.cones);
     if (options.seamless && curvature) {
-      let_borders_run_along(component.mesh, own, task.cones.rotation_order, curvature, task.cones);
+      task.has_directed_borders =
+          let_borders_run_along(component.mesh, own, task.cones.rotation_order, curvature, task.cones);
     }
   }
 }

@@ -22,6 +22,7 @@ struct ComponentTask {
   Array<std::pair<Index, Complex>> pinned_corners;  // and their positions
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
+  bool has_directed_borders = false;                // whose turning follows directions, not the surface
 };
 
 // A surface's components and the task of each.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pipeline/components.hpp"
+#include "pipeline/directed_borders.hpp"
 #include "placement/map_trial.hpp"
 #include "plane/point_lattice.hpp"
 #include "unfold/texture_direction.hpp"
@@ -14,8 +15,6 @@ namespace lsgp {
 namespace {
 
 constexpr double most_stretch = 1.2;  // that is accepted for straight courses
-constexpr double most_missed = 0.12;  // radians, of courses that count as straight; half as much as before does as well
-constexpr double least_gain = 0.05;   // radians
 
 }  // namespace
 
@@ -41,9 +40,7 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
     std::vector<Finding> unsaid;
     PlacedCones found = place_component({task, existing, allowed, task.mirrored}, generous, unsaid, monitor);
     if (!found.reached) return std::nullopt;
-    const double missed = misalignment(found);
-    const double before = misalignment(usual);
-    if (!(missed <= std::max(most_missed, before / 2) && missed < before - least_gain)) return std::nullopt;
+    if (!straightens_courses(misalignment(found), misalignment(usual))) return std::nullopt;
     found.maps += trial.made();
     return found;
   } catch (const Error& error) {

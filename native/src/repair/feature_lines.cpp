@@ -167,15 +167,18 @@ class FeatureTracer {
 
 Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature,
                          const Eigen::VectorXcd& position) {
+  constexpr double least_common = 0.1;  // of the length, less of which is chance: arcs have no direction
   const char least = *std::max_element(feature.begin(), feature.end());
   Complex sum = 0;
+  double length = 0;
   for (Index h = 0; h < surface.mesh.halfedge_count(); ++h) {
     if (feature[h] == no_feature || feature[h] < least) continue;
     const Complex edge =
         position[surface.cut_mesh.copy_of_corner[next(h)]] - position[surface.cut_mesh.copy_of_corner[h]];
     sum += std::polar(surface.geometry.length[h], 4 * std::arg(edge));
+    length += surface.geometry.length[h];
   }
-  return std::polar(1.0, -std::arg(sum) / 4);
+  return std::abs(sum) > least_common * length ? std::polar(1.0, -std::arg(sum) / 4) : 1;
 }
 
 FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,

@@ -28,7 +28,7 @@ struct FeatureLines {
 };
 
 // The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares
-// sense.  feature: the FeatureKind of halfedges.
+// sense; 1 where they have no direction in common, as circles.  feature: the FeatureKind of halfedges.
 Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position);
 
 // ends: vertices at which lines end in addition, (n).

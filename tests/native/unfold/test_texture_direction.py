@@ -213,6 +213,34 @@ def test_a_vase_has_its_cones_around_the_bottom_and_level_courses() -> None:
         assert usual.mapped_l2 < placed.mapped_l2
 
 
+def open_lathe(radius: NDArray[np.float64], height: NDArray[np.float64], around: int = 36) -> meshes.Mesh:
+    """The same without the disk."""
+    closed = lathe(radius, height, around)
+    middle = len(closed.positions) - 1
+    return meshes.make(closed.positions[:-1], closed.triangles[(closed.triangles != middle).all(axis=1)])
+
+
+def test_flat_rings_become_strips_only_where_that_stretches_little() -> None:
+    """Directions around a ring; on a wide one, courses around the middle would be stretched to several times."""
+    for inner, most_l2, most_error in ((0.5, 1.2, 2), (0.2, 1 + 1e-9, 45)):
+        ring = open_lathe(np.linspace(1, inner, 8), np.zeros(8))
+        x, y, _ = ring.positions[ring.triangles].mean(axis=1).T
+        surface = lsgp.Surface(ring.positions, ring.triangles, directions=np.stack([-y, x, 0 * x], axis=1))
+        result = lsgp.parameterize(surface, [], options=lsgp.Options(seamless=lsgp.Seamless()))
+        assert result.distortion.l2_stretch <= most_l2
+        assert result.direction_error <= np.radians(most_error)
+
+
+def test_round_creases_do_not_turn_the_texture() -> None:
+    """The rim of a hole in a square plate bends by 60 degrees, and has no direction of its own."""
+    radius = np.array([3, 2, 1.3, 1, 0.97])
+    plate = open_lathe(radius, np.array([0, 0, 0, 0, -0.05]), 32)
+    turn = plate.positions[:32, :2]
+    plate.positions[:32, :2] = 3 * turn / np.abs(turn).max(axis=1, keepdims=True)
+    result = lsgp.auto_unwrap(lsgp.Surface(plate.positions, plate.triangles, directions=(0, 1, 0)), preset="tile")
+    assert result.direction_error <= np.radians(5)
+
+
 def test_a_sleeve_has_no_cones() -> None:
     mesh = meshes.cylinder(24, 12, taper=0.5)
     surface = lsgp.Surface(mesh.positions, mesh.triangles, directions=UP)
