@@ -244,8 +244,8 @@ def gains_features(components: Components, along: Result, usual: Result, is_stra
 
 
 def _most_growth(share: FloatArray | float) -> FloatArray:
-    """Of the L2 stretch through cones for features, from a map with this share of features along the lattice: these cones
-    may cost a tenth, and features, where none are along it yet, another."""
+    """Of the L2 stretch through cones for features, from a map with this share of features along the lattice: these
+    cones may cost a tenth, and features, where none are along it yet, another."""
     return np.where(share >= _LEAST_FEATURES, 1.0, _MOST_L2_FOR_FEATURES) * _MOST_L2_FOR_FEATURES
 
 
