@@ -39,6 +39,8 @@ MapThrough = tuple[CompletedCones, Result]
 _BEFORE_FEATURES = 0.9
 # And what two attempts, with and without symmetry, have each.
 _TRYING = 0.5
+# By which a map without creases along the lattice has to be better, where most run along it.
+_WORTH_OF_DIRECTION = 0.15
 # What tells that a component is not symmetric.
 _ODD = "NOT_SYMMETRIC"
 
@@ -260,14 +262,15 @@ def _best_along(
 
 
 def _without_creases(maps: _Maps, along: MapThrough, options: Options, progress: Progress | None) -> MapThrough:
-    """The map, or the one in which no creases run along the lattice, where few of them can and tiles become larger."""
+    """The map, or the one in which no creases run along the lattice, where not all of them can and that is better."""
     is_marked = along[1].features is not None
-    if is_marked or not len(along[1].seamless.creases) or has_direction(feature_share(along[1])):
-        return along
-    plain = maps.attempt(along[0], replace(options, straighten=False), progress)
-    if plain is None or worth_along_features(plain[1]) <= worth_along_features(along[1]):
+    if is_marked or not len(along[1].seamless.creases) or not releases_features(along[1]):
         return along
     share, found = feature_share(along[1]), along[1].seamless
+    least = worth_along_features(along[1]) + (_WORTH_OF_DIRECTION if has_direction(share) else 0)
+    plain = maps.attempt(along[0], replace(options, straighten=False), progress)
+    if plain is None or worth_along_features(plain[1]) <= least:
+        return along
     released = Finding(
         "FEATURES_OFF_LATTICE",
         f"No creases run along the lattice: only {100 * share:.0f} % of their length can, at an L2 stretch of "
