@@ -2,7 +2,6 @@
 #include "cut/cut_reroute.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace lsgp {
@@ -96,7 +95,9 @@ PerTriangle<int> CutReroute::powers(const Array<Index>& way) const {
   const PerHalfedge<int> jump = jumps(way);
   PerTriangle<int> power(mesh_.triangle_count(), 0);
   PerTriangle<char> is_reached(mesh_.triangle_count(), 0);
-  Array<Index> queue{cut_.path.front() / 3};
+  Array<Index> queue;
+  queue.reserve(mesh_.triangle_count());
+  queue.push_back(cut_.path.front() / 3);
   is_reached[queue.front()] = 1;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Index f = queue[i];
@@ -121,17 +122,24 @@ PerTriangle<int> CutReroute::powers(const Array<Index>& way) const {
 
 // The power of what has to stay: of the triangles beside other cuts, or, without any, of most triangles.
 int CutReroute::rest(const Array<Index>& moved, const PerTriangle<int>& power) const {
-  std::map<int, Index> counts, beside;
+  int least = power[moved.front()], largest = least;
   for (const Index f : moved) {
-    ++counts[power[f]];
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      if (cut_.is_other[h]) ++beside[power[f]];
-    }
+    least = std::min(least, power[f]);
+    largest = std::max(largest, power[f]);
   }
-  if (beside.size() > 1) refuse("A cone or another cut lies between. Move the cut elsewhere.");
-  if (!beside.empty()) return beside.begin()->first;
-  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
-  return std::max_element(counts.begin(), counts.end(), fewer)->first;
+  Array<Index> counts(largest - least + 1, 0), beside(largest - least + 1, 0);
+  for (const Index f : moved) {
+    ++counts[power[f] - least];
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) beside[power[f] - least] += cut_.is_other[h] != 0;
+  }
+  const auto most = std::max_element(beside.begin(), beside.end());
+  if (*most == 0) {
+    return least + static_cast<int>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+  }
+  if (std::count(beside.begin(), beside.end(), 0) + 1 < ssize(beside)) {
+    refuse("A cone or another cut lies between. Move the cut elsewhere.");
+  }
+  return least + static_cast<int>(most - beside.begin());
 }
 
 }  // namespace lsgp

@@ -11,6 +11,9 @@ import numpy as np
 import oracle
 import pytest
 from map_checks import pairs, surface
+from scipy import sparse as sp
+from scipy.sparse import csgraph
+from shared_meshes import shared_mesh
 
 
 def with_edges(mesh: meshes.Mesh, **fields: object) -> lsgp.Surface:
@@ -110,6 +113,51 @@ def test_cuts_keep_to_where_they_are_cheap() -> None:
         on_cut = np.unique(cuts.edges)
         away = sphere.positions[on_cut] @ np.array(front)
         assert set(poles) <= set(on_cut.tolist()) and away.max() < 0.2
+
+
+def turning(places: np.ndarray) -> float:
+    """By length, of a polyline."""
+    steps = np.diff(places, axis=0)
+    length = np.linalg.norm(steps, axis=1)
+    along = steps / length[:, None]
+    return float(np.arccos(np.clip((along[1:] * along[:-1]).sum(axis=1), -1, 1)).sum() / length.sum())
+
+
+def beside_shortest(of: lsgp.Surface, paths: list[np.ndarray]) -> float:
+    """How much paths turn by length, relative to the shortest ways between their ends within two edges of them."""
+    count, lengths = len(of.positions), np.linalg.norm(np.diff(of.positions[of.edges], axis=1), axis=2).ravel()
+    graph = sp.coo_matrix((lengths, of.edges.T), (count, count)).tocsr()
+    graph += graph.T
+    turned, shortest = [], []
+    for path in (path for path in paths if len(path) > 3 and path[0] != path[-1]):
+        corridor = path
+        for _ in range(2):
+            corridor = np.union1d(corridor, graph[corridor].indices)
+        first, last = np.searchsorted(corridor, path[[0, -1]])
+        _, before = csgraph.dijkstra(graph[corridor][:, corridor], indices=first, return_predecessors=True)
+        way = [last]
+        while way[-1] != first:
+            way.append(before[way[-1]])
+        turned.append(turning(of.positions[path]))
+        shortest.append(turning(of.positions[corridor[way]]))
+    return float(np.mean(turned) / np.mean(shortest))
+
+
+def test_hidden_cuts_hardly_zigzag() -> None:
+    """Costs that differ by chance from edge to edge make cuts turn twice as much."""
+    hidden, by_chance = [], []
+    for name in ("igea-16k", "bird", "hand-5k", "kitten-genus1"):
+        mesh = shared_mesh(name)
+        plain = with_edges(mesh)
+        fronts = [lsgp.cut_costs(plain, front) for front in ((0, 0, 1), (1, 0, 0), (0, -1, 0))]
+        noise = np.exp(np.random.default_rng(1).normal(size=len(plain.edges)))
+        *along, across = (
+            beside_shortest(plain, lsgp.find_cuts(replace(plain, cut_costs=costs), mesh.cones).paths)
+            for costs in (*fronts, noise)
+        )
+        hidden += along
+        by_chance.append(across)
+    assert np.median(hidden) <= 1.3 and max(hidden) <= 1.6 < min(by_chance)
 
 
 MAPPED = {
