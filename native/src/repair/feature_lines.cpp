@@ -165,9 +165,8 @@ class FeatureTracer {
 
 }  // namespace
 
-Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature,
-                         const Eigen::VectorXcd& position) {
-  constexpr double least_common = 0.1;  // of the length, less of which is chance: arcs have no direction
+Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position,
+                         double least_common) {
   const char least = *std::max_element(feature.begin(), feature.end());
   Complex sum = 0;
   double length = 0;

@@ -28,8 +28,10 @@ struct FeatureLines {
 };
 
 // The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares
-// sense; 1 where they have no direction in common, as circles.  feature: the FeatureKind of halfedges.
-Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position);
+// sense.  feature: the FeatureKind of halfedges.  least_common: where less of their length has a direction in common,
+// as on circles, the result is 1.
+Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position,
+                         double least_common = 0);
 
 // ends: vertices at which lines end in addition, (n).
 FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,

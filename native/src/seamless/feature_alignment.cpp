@@ -90,7 +90,7 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   // Close to an isometry, lines have nearly their final directions.
   const PerVertex<char> fixed(mesh.vertex_count(), 0);
   task_.minimize(free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed), unaligned_);
-  unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
+  unaligned_ *= turn_to_features(task_.surface, feature, unaligned_, bounds_.least_common);
   const FeatureLines traced = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_);
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;
   jacobians_ = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);

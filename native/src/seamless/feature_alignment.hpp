@@ -22,6 +22,7 @@ struct FeatureAlignment {
 struct AlignmentBounds {
   double most_l2;           // stretch that features may cost
   double least_of_creases;  // share of their length: where nothing is marked and fewer can run along the axes, none do
+  double least_common;      // share of their length that turns the map, of which less is chance
 };
 
 // feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice. As many

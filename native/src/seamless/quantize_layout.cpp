@@ -201,6 +201,7 @@ void LayoutQuantizer::align_features() {
   const double most_growth = demands_.whole_features ? 1.2 : 1.1;  // of the L2 stretch
   // Quads may follow any creases; a texture gets its direction from most of them.
   const double least_of_creases = demands_.whole_features ? 0 : 0.75;
+  const double least_common = is_turned_ ? 0.1 : 0;  // arcs do not turn what is upright
   const PerHalfedge<char> feature =
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
@@ -209,7 +210,7 @@ void LayoutQuantizer::align_features() {
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
   const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};
   std::optional<FeatureAlignment>& alignment = demands_.alignment;
-  if (!alignment) alignment = align_with_axes(task, feature, start_, {most_l2_, least_of_creases});
+  if (!alignment) alignment = align_with_axes(task, feature, start_, {most_l2_, least_of_creases, least_common});
   release_reasons_ = alignment->reasons;
   if (alignment->lines.empty()) return;
   features_ = std::make_unique<FeatureLayout>(task, *alignment);
