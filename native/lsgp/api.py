@@ -297,7 +297,8 @@ def place_cones(
         fewest that bring the L2 stretch of the map to `target`.
     lattice: angles become multiples of its rotation, for a seamless layout. If the surface has directions and no
         `count` is given, cones are placed only where directions are not parallel, provided that the texture is then at
-        most 7 degrees off them and the stretch within 1.2: around the bottom of a vase, and none in a sleeve.
+        most 7 degrees off them, or half as far as otherwise, and the stretch within 1.2: around the bottom of a vase,
+        and none in a sleeve.
     prefer_sharp: prefer sharp corners to smooth regions if that costs little.
     symmetric: the same cones on both sides of a plane, given by `mirror`, a point on it and its normal, or, if that is
         None, detected; also on surfaces that are symmetric only up to 2 % of their extent, and on components that
