@@ -21,6 +21,7 @@ from ..io.whole_files import write_output
 from ..options import Options, Seamless
 from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh, remesh_to_quads
+from .direction_options import add_direction_options, directions_of_faces, load_directions, require_finite_up
 from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
 from .unwrap_options import (
@@ -48,13 +49,10 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
     add_cones_option(quads)
     add_mode_option(quads)
     add_stretch_option(quads)
-    quads.add_argument(
-        "--up",
-        metavar=("X", "Y", "Z"),
-        nargs=3,
-        type=float,
-        help="the model's up direction: the grid is rotated so that rows of quads follow it, as far as the cones "
-        "permit (default: any rotation)",
+    add_direction_options(
+        quads,
+        "the grid is rotated so that rows of quads follow it, as far as the cones permit (default: any rotation)",
+        "rows of quads",
     )
     add_features_option(
         quads,
@@ -88,14 +86,15 @@ def require_quads_output(args: argparse.Namespace) -> None:
 def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> QuadRemesh:
     """Cover args.input with quads and write them into args.output.  Raises OSError, UsageError, LsgpError."""
     options = _options(args)
-    if args.up is not None and not all(map(math.isfinite, args.up)):
-        raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
+    require_finite_up(args)
     path = cones_file(args)
     cones_json = None if path is None else load_json(path)
+    directions_json = load_directions(args)
     file = read_file(args.input, run, args.format, stitch=stitches(args))
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
-    surface = file.surface()
-    surface = replace(surface, directions=args.up, features=features_of(args.features, surface))
+    surface, of_faces = file.surface(), directions_of_faces(args, directions_json, file)
+    directions = args.up if of_faces is None else of_faces[file.triangulation.polygon]
+    surface = replace(surface, directions=directions, features=features_of(args.features, surface))
     with run.stage("remesh_to_quads"):
         remesh = remesh_to_quads(
             surface,

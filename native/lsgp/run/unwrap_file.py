@@ -20,7 +20,7 @@ from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
-from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
+from ..io.side_files import cones_in, load_importance, load_json, pairs_in
 from ..io.whole_files import write_output
 from ..layouts.packing import laid_out, packing_once
 from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
@@ -39,6 +39,7 @@ from ..presets.cone_choices import best_map, possible_cones
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
+from .direction_options import directions_of_faces, load_directions
 from .feature_options import features_of
 from .unwrap_options import (
     cone_count,
@@ -208,8 +209,7 @@ def _map(
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     cones_json = None if cones_path is None else load_json(cones_path)
     seams_json = [] if seams_path is None else load_json(seams_path)
-    directions_path = None if args.directions is None else Path(args.directions)
-    directions_json = None if directions_path is None else load_json(directions_path)
+    directions_json = load_directions(args)
     importance = None if args.importance is None else load_importance(Path(args.importance))
     file = read_file(args.input, run, given_format, stitch=stitches(args))
     if importance is not None and len(importance) != len(file.mesh.positions):
@@ -218,9 +218,8 @@ def _map(
             f"'{args.importance}' has {len(importance)} numbers for {len(file.mesh.positions)} vertices. "
             "Give one for each.",
         )
-    directions = up_of(args)
-    if directions_path is not None:
-        of_faces = directions_in(directions_json, directions_path, len(file.mesh.sizes))
+    directions, of_faces = up_of(args), directions_of_faces(args, directions_json, file)
+    if of_faces is not None:
         directions = of_faces[file.triangulation.polygon]
         run.directed_faces = np.flatnonzero(of_faces.any(axis=1))
     surface = replace(file.surface(pairs_in(seams_json, seams_path, "seam vertex"), importance), directions=directions)

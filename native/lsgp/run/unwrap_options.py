@@ -37,6 +37,7 @@ from ..options import (
 from ..presets.auto_unwrap import Preset, preset_options
 from ..stitching import at_stitched
 from ..surface import Surface
+from .direction_options import add_direction_options, require_finite_up
 from .feature_options import add_features_option
 
 DEFAULT_TEXTURE_SIZE = 1024
@@ -118,7 +119,12 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "edges that run straight along u or v, as far as they do not contradict each other and cost at most a tenth of "
         "L2 stretch",
     )
-    _add_direction_options(unwrap)
+    add_direction_options(
+        unwrap,
+        "islands are rotated so that the texture's v follows it; 0 0 0: any rotation (default: with --preset tile "
+        "0 1 0, otherwise 0 0 0)",
+        "v",
+    )
     add_stitch_option(unwrap, default=None)
     _add_preset_switches(unwrap)
     unwrap.add_argument(
@@ -161,23 +167,6 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
 def _add_preset_switches(unwrap: argparse.ArgumentParser) -> None:
     for name, (_, text) in _PRESET_SWITCHES.items():
         unwrap.add_argument(f"--no-{name}", dest=name, action="store_false", help=f"with --preset: {text}")
-
-
-def _add_direction_options(unwrap: argparse.ArgumentParser) -> None:
-    direction = unwrap.add_mutually_exclusive_group()
-    direction.add_argument(
-        "--up",
-        metavar=("X", "Y", "Z"),
-        nargs=3,
-        type=float,
-        help="the model's up direction: islands are rotated so that the texture's v follows it; 0 0 0: any rotation "
-        "(default: with --preset tile 0 1 0, otherwise 0 0 0)",
-    )
-    direction.add_argument(
-        "--directions",
-        metavar="FILE.json",
-        help="[[face, x, y, z], ...], faces counted from 0: the direction of v there; longer vectors have more weight",
-    )
 
 
 def add_cones_option(command: argparse.ArgumentParser) -> None:
@@ -555,8 +544,7 @@ def library_options(args: argparse.Namespace) -> Options:
     if args.prescription == "manual" and cones_file(args) is None:
         raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
     require_cut_options(args)
-    if args.up is not None and not all(map(math.isfinite, args.up)):
-        raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
+    require_finite_up(args)
     for name, (presets, _) in _PRESET_SWITCHES.items():
         if args.preset is None and not getattr(args, name):
             raise UsageError(f"--no-{name} is for presets; add --preset {presets}")

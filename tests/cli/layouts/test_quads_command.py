@@ -62,6 +62,21 @@ def test_the_side_of_quads_is_that_on_the_surface(lsgp, cube_files: Path) -> Non
     np.testing.assert_allclose(lengths, size, rtol=1e-5)
 
 
+def test_strokes_direct_rows_as_up_does(lsgp, ball_files: Path) -> None:
+    faces = len(read_mesh(ball_files / "ball.obj").sizes)
+    made = {}
+    for name, vector in (("up", (0, 0, 1)), ("across", (1, 2, 0))):
+        (ball_files / f"{name}.json").write_text(json.dumps([[face, *vector] for face in range(faces)]))
+        for option, value in (("--up", vector), ("--directions", [f"{name}.json"])):
+            assert lsgp(*QUADS, "--target", 300, "--cones", "cones.json", option, *value).code == 0
+            made[name, option] = (ball_files / "quads.obj").read_text()
+        assert made[name, "--directions"] == made[name, "--up"]
+    assert made["up", "--up"] != made["across", "--up"]
+    (ball_files / "outside.json").write_text(json.dumps([[faces, 0, 0, 1]]))
+    refused = lsgp(*QUADS, "--directions", "outside.json")
+    assert refused.code == 3 and "INDEX_OUT_OF_RANGE" in refused.err
+
+
 def test_low_stretch_makes_edges_more_alike(lsgp, ball_files: Path) -> None:
     deviations = []
     for mode in ("conformal", "low-stretch"):
