@@ -84,6 +84,24 @@ class QuadRemesh(EqualByContent, ShortRepr):
     warnings: list[Finding]
     surface: Surface
 
+    def feature_distances(self) -> FloatArray:
+        """(k,) of the irregular vertices, `layout.cones`, from the nearest feature, in sides of a quad: marked edges,
+        or creases where nothing is marked. Empty without features."""
+        edges = self.surface.features if len(self.surface.features) else self.layout.seamless.creases
+        if not len(edges):
+            return np.empty(0)
+        begin, end = self.surface.positions[edges].transpose(1, 0, 2)
+        nearest = [_distance(point, begin, end) for point in self.surface.positions[self.layout.cones]]
+        return np.array(nearest) / self.layout.seamless.tile_size
+
+
+def _distance(point: FloatArray, begin: FloatArray, end: FloatArray) -> float:
+    """From a point to the nearest of some segments, (e, 3) each."""
+    along, away = end - begin, point - begin
+    square = (along * along).sum(axis=1)
+    part = np.clip((along * away).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
+    return float(np.linalg.norm(away - part[:, np.newaxis] * along, axis=1).min())
+
 
 def remesh_to_quads(
     surface: Surface,

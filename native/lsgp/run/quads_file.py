@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.arguments import FloatArray
 from ..base.progress import Progress
 from ..io.mesh_formats import OBJ, output_format
 from ..io.mesh_obj import format_obj
@@ -33,6 +34,8 @@ from .unwrap_options import (
     cones_file,
     stitches,
 )
+
+_ON_FEATURE = 1e-6  # sides of a quad
 
 
 def add_quads_options(quads: argparse.ArgumentParser) -> None:
@@ -116,6 +119,7 @@ def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:
     mesh = remesh.mesh
     irregular = Counter(mesh.valences[mesh.irregular].tolist())
     kinds = ", ".join(f"{irregular[valence]} of valence {valence}" for valence in sorted(irregular))
+    distances = remesh.feature_distances()
     angle, worst = math.degrees(quality.angle_error), math.degrees(quality.worst_angle_error)
     return "\n".join(
         [
@@ -124,8 +128,18 @@ def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:
             f"corners off 90 degrees: {angle:.1f} on average, {worst:.1f} at most",
             f"edges: {quality.edge_deviation:.1%} standard deviation, from {quality.shortest_edge:.2f} to "
             f"{quality.longest_edge:.2f} of the mean",
+            *_place_of_irregular(distances),
         ]
     )
+
+
+def _place_of_irregular(distances: FloatArray) -> list[str]:
+    """distances: as of `QuadRemesh.feature_distances`."""
+    if not len(distances):
+        return []
+    off = distances[distances > _ON_FEATURE]
+    others = f"; the others {off.mean():.1f} quads from them on average" if len(off) else ""
+    return [f"{len(distances) - len(off)} of {len(distances)} irregular vertices on creases or marked edges{others}"]
 
 
 def _options(args: argparse.Namespace) -> Options:

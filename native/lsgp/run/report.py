@@ -138,8 +138,10 @@ def placement_report(placement: Placement, triangulation: Triangulation, stage_s
 
 def quads_report(remesh: QuadRemesh, quality: QuadQuality, run: Run) -> Report:
     """The report of a mesh of quads. "distortion" is that of the layout whose grid they are; "irregular" of "quads"
-    counts its vertices by how many quads meet there."""
+    counts its vertices by how many quads meet there, "feature_distance" is their mean distance from features, in sides
+    of a quad, or null without."""
     mesh, layout = remesh.mesh, remesh.layout
+    distances = remesh.feature_distances()
     valences, counts = np.unique(mesh.valences[mesh.irregular], return_counts=True)
     return EMPTY | {
         "warnings": _warnings(remesh.warnings, run.triangulation),
@@ -151,6 +153,7 @@ def quads_report(remesh: QuadRemesh, quality: QuadQuality, run: Run) -> Report:
             "count": len(mesh.quads),
             "vertices": len(mesh.positions),
             "irregular": {str(valence): count for valence, count in zip(valences, counts.tolist(), strict=True)},
+            "feature_distance": float(distances.mean()) if len(distances) else None,
             "size": layout.seamless.tile_size,
             **asdict(quality),
         },

@@ -77,6 +77,16 @@ def test_strokes_direct_rows_as_up_does(lsgp, ball_files: Path) -> None:
     assert refused.code == 3 and "INDEX_OUT_OF_RANGE" in refused.err
 
 
+def test_the_place_of_irregular_vertices_is_told_where_there_are_features(lsgp, cube_files: Path) -> None:
+    run = ["quads", "cube.obj", "-o", "out.obj", "--target", 300, "--report", "report.json"]
+    done = lsgp(*run)
+    assert "8 of 8 irregular vertices on creases or marked edges\n" in done.out
+    assert done.report()["quads"]["feature_distance"] == 0
+    done = lsgp(*run, "--no-straighten")
+    assert "marked edges" not in done.out
+    assert done.report()["quads"]["feature_distance"] is None
+
+
 def test_low_stretch_makes_edges_more_alike(lsgp, ball_files: Path) -> None:
     deviations = []
     for mode in ("conformal", "low-stretch"):

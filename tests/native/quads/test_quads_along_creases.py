@@ -19,7 +19,7 @@ from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
 from sanitized_run import many_solves
-from scipy.spatial import HalfspaceIntersection
+from scipy.spatial import HalfspaceIntersection, cKDTree
 from shared_meshes import hard_mesh
 from zoo import closed
 
@@ -259,3 +259,22 @@ def test_warnings_name_the_given_edges() -> None:
             assert {tuple(sorted(pair)) for pair in finding.elements.indices.tolist()} <= edges
     assert found.mesh.triangles.max() < len(mesh.triangles)
     assert found.mesh.surface_vertices.max() < len(mesh.positions)
+
+
+def test_distances_of_irregular_vertices_from_features() -> None:
+    """Of an equator that is marked on a ball, as to samples of it."""
+    ball = meshes.icosphere(3)
+    on_equator = np.abs(ball.positions[:, 2]) < 1e-9
+    edges = np.unique(np.sort(ball.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    marked = edges[on_equator[edges].all(axis=1)]
+    remesh = lsgp.remesh_to_quads(replace(surface(ball), features=marked), target=400)
+    ends = remesh.surface.positions[remesh.surface.features]
+    part = np.linspace(0, 1, 101)[:, np.newaxis, np.newaxis]
+    samples = (ends[:, 0] + part * (ends[:, 1] - ends[:, 0])).reshape(-1, 3)
+    distance = cKDTree(samples).query(remesh.surface.positions[remesh.layout.cones])[0]
+    step = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max() / 100
+    measured = remesh.feature_distances() * remesh.layout.seamless.tile_size
+    assert len(measured) == len(remesh.mesh.irregular) > 0
+    assert (measured <= distance + 1e-12).all() and (distance <= np.hypot(measured, step) + 1e-12).all()
+    assert measured.max() > 0.1
+    assert len(lsgp.remesh_to_quads(surface(ball), target=400).feature_distances()) == 0
