@@ -11,7 +11,6 @@ import bpy
 from ...core import identifiers, native
 from ...core.choices import Choices, enum_items
 from ...core.region import Region
-from ...jobs.tasks.directions import DirectionChoice
 from ...jobs.tasks.quads import QuadSettings, QuadTask, quad_task, remesh_all
 from ...jobs.tasks.summaries import quad_summary
 from ...mesh.quad_object import add_quad_object
@@ -19,7 +18,7 @@ from ...mesh.region_read import Faces, Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.polling import poll_computation_on_objects
 from ..shared.properties import ConeGroupProperty
-from ..unwrapping.direction_choices import AXES
+from ..unwrapping.direction_choices import chosen_direction
 
 if TYPE_CHECKING:
     import lsgp
@@ -31,6 +30,7 @@ AMOUNTS: Choices = {
     "SIZE": (None, "Size", "Quads of this size on the surface, before rounding"),
 }
 ROWS: Choices = {
+    "AUTO": (None, "Automatic", "Rows run along what Draw Texture Up has drawn on the mesh; without that, up"),
     "FREE": (None, "As They Fit", "Rows run where quads are distorted least"),
     "X": (None, "World X", "Rows run along the world's X axis, as far as the irregular vertices permit"),
     "Y": (None, "World Y", "Rows run along the world's Y axis, as far as the irregular vertices permit"),
@@ -79,7 +79,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         unit="LENGTH",
     )
     rows: bpy.props.EnumProperty(
-        name="Rows Along", description="Where rows of quads run", items=enum_items(ROWS), default="Z"
+        name="Rows Along", description="Where rows of quads run", items=enum_items(ROWS), default="AUTO"
     )
     even_sizes: bpy.props.BoolProperty(
         name="Even Sizes",
@@ -128,7 +128,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
             ),
             target=self.count if self.amount == "COUNT" else None,
             size=self.size if self.amount == "SIZE" else None,
-            direction=DirectionChoice(AXES.get(self.rows)),
+            direction=chosen_direction(self.rows, tiles=True),
         )
         return Groups(self.vertex_group), lambda _obj, region: quad_task(region, settings)
 

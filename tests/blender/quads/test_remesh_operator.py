@@ -11,6 +11,7 @@ from installed import addon
 from logged import refused
 from scenes import add_ball, add_cone_cube, add_cube, add_grid, changed, corners, edit, mark, marked, snapshot
 
+identifiers = addon.core.identifiers
 ALLOWED = {"data-blocks", "context", "selected objects"}
 
 
@@ -190,6 +191,21 @@ def test_rows_run_along_the_world_axis():
     along /= np.linalg.norm(along, axis=1)[:, None]
     upright = np.abs(along[:, 2])
     assert (np.minimum(upright, 1 - upright) < 1e-4).all()
+
+
+def test_rows_run_along_what_is_drawn():
+    found = {}
+    for drawn in (False, True):
+        ball = add_ball()
+        if drawn:
+            attribute = ball.data.attributes.new(identifiers.UP_ATTRIBUTE, "FLOAT_VECTOR", "FACE")
+            attribute.data.foreach_set("vector", np.tile([1.0, 2.0, 0.0], len(ball.data.polygons)).astype(np.float32))
+        for rows in ("AUTO", "Z"):
+            select_only(ball)
+            found[drawn, rows] = positions(remesh(count=300, rows=rows))
+    np.testing.assert_array_equal(found[False, "AUTO"], found[False, "Z"])
+    np.testing.assert_array_equal(found[True, "Z"], found[False, "Z"])
+    assert not np.array_equal(found[True, "AUTO"], found[True, "Z"])
 
 
 def test_an_object_without_size_is_refused(reports):
