@@ -10,7 +10,13 @@
 
 namespace lsgp {
 
-Result map_surface(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
-                   OverlapSearch search, const Progress& progress);
+struct MapRequest {
+  const Cones& cones;
+  const Options& options;
+  const Pins& pins;
+  OverlapSearch search;
+};
+
+Result map_surface(const Surface& surface, const MapRequest& request, const Progress& progress);
 
 }  // namespace lsgp

@@ -53,12 +53,13 @@ Eigen::VectorXd costs_at_vertices(const Surface& surface) {
 // The smaller surface with the cones among its vertices, as one of its own.
 class ConedSurface {
  public:
-  ConedSurface(const ThinnedSurface& thinned, const Positions& positions, const PerHalfedge<char>& fixed,
-               const Array<Index>& vertex_of_node, const PerVertex<Index>& node, const std::vector<Index>& cones)
-      : refined(thinned, positions, fixed), vertex_of_node_(vertex_of_node), node_(node) {
+  // without_cones: the smaller surface.  place: of vertices on it.
+  ConedSurface(RefinedSurface without_cones, const PerVertex<SurfacePlace>& place, const Array<Index>& vertex_of_node,
+               const PerVertex<Index>& node, const std::vector<Index>& cones)
+      : refined(std::move(without_cones)), vertex_of_node_(vertex_of_node), node_(node) {
     for (const Index v : cones) {
       if (node_[v] != none) continue;
-      refined.add(v, thinned.place[v]);
+      refined.add(v, place[v]);
       node_[v] = node_count();
       vertex_of_node_.push_back(v);
     }
@@ -243,8 +244,8 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
     return lsgp::parameterize(kept_->surface, cones, options, {}, progress);
   }
   require_valid(kept_->surface, cones);
-  const ConedSurface coned(thinned, kept_->surface.positions, kept_->fixed, kept_->vertex_of_node, kept_->node,
-                           cones.vertices);
+  const ConedSurface coned({thinned, kept_->surface.positions, kept_->fixed}, thinned.place, kept_->vertex_of_node,
+                           kept_->node, cones.vertices);
   Cones of_nodes = cones;
   for (Index& v : of_nodes.vertices) v = coned.node(v);
   const Surface small = kept_->smaller(coned);
@@ -254,8 +255,9 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
     if (vertex >= 0 && vertex < kept_->surface.positions.rows()) vertex = coned.node(vertex);
   }
   const ThreadCount threads(options.threads);
+  const Pins unpinned;
   try {
-    Result of_surface = map_surface(small, of_nodes, of_small, {}, OverlapSearch::left_out, progress);
+    Result of_surface = map_surface(small, {of_nodes, of_small, unpinned, OverlapSearch::left_out}, progress);
     return kept_->carried(coned, std::move(of_surface));
   } catch (const Error& error) {
     throw Error(error.code(), in_words(error).what(), on_whole_surface(coned, error.elements()));

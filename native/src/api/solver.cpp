@@ -57,9 +57,11 @@ void quantize(KeptComponents& kept, const Options& options, MappedComponents& ma
   }
 }
 
-Result map_components(const KnownSurface& known, const Cones& cones, const Options& options, const Pins& pins,
-                      OverlapSearch search, const Progress& progress) {
+Result map_components(const KnownSurface& known, const MapRequest& request, const Progress& progress) {
   const Surface& surface = known.surface;
+  const Cones& cones = request.cones;
+  const Options& options = request.options;
+  const Pins& pins = request.pins;
   KeptComponents& kept = known.components;
   Result result;
   const LinearAlgebraCounter counter;
@@ -134,7 +136,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), mapped.results[i]->map);
   }
   assembly.require_any();
-  assembly.finish(cones, work.topology.duplicates, search);
+  assembly.finish(cones, work.topology.duplicates, request.search);
   say_once(result.warnings);
   monitor.advance(1);
   result.linear_algebra = counter.counted();
@@ -180,7 +182,7 @@ Solver::Solver(Solver&&) noexcept = default;
 Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins,
                             const Progress& progress) try {
   const Turn turn(*kept_->is_busy);
-  return map_components({surface_, *kept_->components}, cones, options, pins, OverlapSearch::made, progress);
+  return map_components({surface_, *kept_->components}, {cones, options, pins, OverlapSearch::made}, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }
@@ -192,15 +194,14 @@ Placement Solver::place_cones(const Cones& existing, const PlacementOptions& opt
   throw in_words(error);
 }
 
-Result map_surface(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
-                   OverlapSearch search, const Progress& progress) {
+Result map_surface(const Surface& surface, const MapRequest& request, const Progress& progress) {
   KeptComponents components(false);
-  return map_components({surface, components}, cones, options, pins, search, progress);
+  return map_components({surface, components}, request, progress);
 }
 
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                     const Progress& progress) try {
-  return map_surface(surface, cones, options, pins, OverlapSearch::made, progress);
+  return map_surface(surface, {cones, options, pins, OverlapSearch::made}, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }
