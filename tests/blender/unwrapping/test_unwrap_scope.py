@@ -217,7 +217,7 @@ def test_failure_at_any_stage_changes_nothing(failure, in_edit_mode, monkeypatch
     if in_edit_mode:
         edit(cube)
 
-    def fail(*_arguments):
+    def fail(*_arguments, **_options):
         raise error
 
     before = snapshot(cube)
