@@ -6,10 +6,11 @@ A tool that takes clicks on the model could not tell them from those on such a g
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import bpy
+
+from .views import view_areas
 
 
 class HiddenGizmos:
@@ -24,14 +25,14 @@ class HiddenGizmos:
 
     @bpy.app.handlers.persistent
     def hide(self, *_: Any) -> None:
-        for space in _views():
+        for space in (area.spaces.active for area in view_areas()):
             on = [name for name in _settings(space) if getattr(space, name)]
             self._hidden[space.as_pointer()] = on
             _switch(space, on, False)
 
     @bpy.app.handlers.persistent
     def show(self, *_: Any) -> None:
-        for space in _views():
+        for space in (area.spaces.active for area in view_areas()):
             # A view that was split off since is as the one that it was split off from.
             _switch(space, self._hidden.get(space.as_pointer(), _settings(space)), True)
 
@@ -39,12 +40,6 @@ class HiddenGizmos:
         self.show()
         bpy.app.handlers.save_pre.remove(self.show)
         bpy.app.handlers.save_post.remove(self.hide)
-
-
-def _views() -> Iterator[bpy.types.Space]:
-    """Of all screens, also those that are not shown."""
-    areas = (area for screen in bpy.data.screens for area in screen.areas)
-    return (area.spaces.active for area in areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})
 
 
 def _settings(space: bpy.types.Space) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import bpy
@@ -13,7 +12,7 @@ from .gizmos import HiddenGizmos
 from .polling import poll_computation, poll_edit_mesh
 from .redo import last_operator
 from .status_bar import Hint, status
-from .views import shows_meshes
+from .views import shows_meshes, view_areas
 
 INTERVAL = 1 / 60
 NAVIGATION = {"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "NDOF_MOTION"}
@@ -120,7 +119,7 @@ class ModalEdit:
 
     def _show(self, header: str | None, hints: list[Hint]) -> None:
         """In the headers of views and in the status bar."""
-        for area in _view_areas():
+        for area in view_areas():
             area.header_text_set(header)
         bpy.context.workspace.status_text_set(status(hints))
 
@@ -137,11 +136,6 @@ class ModalEdit:
         for workspace in bpy.data.workspaces:
             with context.temp_override(workspace=workspace):
                 workspace.status_text_set(None)
-        for area in _view_areas():
+        for area in view_areas():
             area.header_text_set(None)
         self._objects.end()
-
-
-def _view_areas() -> Iterator[bpy.types.Area]:
-    """Of all screens, also those that are not shown."""
-    return (area for screen in bpy.data.screens for area in screen.areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})

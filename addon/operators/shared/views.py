@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -41,6 +42,11 @@ def view_at(window: bpy.types.Window, x: int, y: int) -> View | None:
 def shows_meshes(space: bpy.types.Space) -> bool:
     """Whether it is a 3D view, or a UV editor."""
     return space.type == "VIEW_3D" or (space.type == "IMAGE_EDITOR" and space.show_uvedit)
+
+
+def view_areas() -> Iterator[bpy.types.Area]:
+    """The 3D views and image editors of all screens, also those that are not shown."""
+    return (area for screen in bpy.data.screens for area in screen.areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})
 
 
 def _is_inside(part: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:

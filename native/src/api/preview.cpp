@@ -113,7 +113,7 @@ struct Preview::Kept {
 Preview::Kept::Kept(Surface given, Index triangles) : surface(std::move(given)) {
   const EdgeTable edges(surface, PerTriangle<char>(surface.triangles.rows(), 0));
   twin = find_twins(surface, edges);
-  thinned = thin(surface, edges, triangles);
+  thinned = thin(surface, edges, twin, triangles);
   fixed = fixed_edges(surface, edges, thinned);
   cost = costs_at_vertices(surface);
   if (surface.directions.rows() > 0) {

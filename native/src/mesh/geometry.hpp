@@ -44,6 +44,11 @@ Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangl
 // edge.
 Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f);
 
+// The doubled area between two directions in the plane, positive if the second one is on the left.
+inline double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 // The angle between two directions, radians; 0 if one is zero.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 

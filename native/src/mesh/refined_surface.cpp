@@ -5,14 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/geometry.hpp"
+
 namespace lsgp {
 
 namespace {
 
 constexpr double least_share_of_corner = 0.05;  // of each where a vertex is added; slivers map badly
 constexpr double least_star_shape = 0.02;       // doubled area relative to the squared sides
-
-double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Of the triangle of 0 and two points.
 double star_shape(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

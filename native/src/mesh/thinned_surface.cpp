@@ -10,6 +10,7 @@
 #include "base/checkpoint.hpp"
 #include "base/memory.hpp"
 #include "base/union_find.hpp"
+#include "mesh/geometry.hpp"
 
 namespace lsgp {
 
@@ -27,8 +28,7 @@ constexpr double bytes_a_corner = 40;
 
 using Point = Eigen::Vector2d;
 
-double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
-double doubled_area(const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); }
+double doubled_area(const Point& a, const Point& b, const Point& c) { return cross_product(b - a, c - a); }
 
 class Thinning {
  public:
@@ -389,9 +389,9 @@ PerTriangle<Index> find_polygons(const Surface& surface, const EdgeTable& edges)
 
 }  // namespace
 
-ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, Index triangles) {
+ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, const PerHalfedge<Index>& twin, Index triangles) {
   require_memory(bytes_a_corner * 3 * static_cast<double>(surface.triangles.rows()));
-  Thinning thinning(surface, find_twins(surface, edges));
+  Thinning thinning(surface, twin);
   thinning.remove(triangles);
   ThinnedSurface out = thinning.read(surface.triangles);
   if (surface.edges) out.polygon = find_polygons(surface, edges);

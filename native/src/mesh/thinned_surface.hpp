@@ -31,8 +31,8 @@ struct ThinnedSurface {
 // others cannot be removed.  Boundaries, seams, borders and features stay as they are, and so do vertices and edges
 // where the surface is not an oriented manifold.  The places follow flattened rings (Lee et al. 1998), so that the
 // surface is mapped one to one.
-// edges: of the surface.
-ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, Index triangles);
+// edges, twin: of the surface, the latter as of `find_twins`.
+ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, const PerHalfedge<Index>& twin, Index triangles);
 
 // The halfedge on the other side of each, or none where an edge has not exactly two triangles, oriented alike.
 PerHalfedge<Index> find_twins(const Surface& surface, const EdgeTable& edges);

@@ -124,7 +124,8 @@ void hand_out_directions(const Positions& directions, const Options& options, Wo
     const Positions own = directions_on(component, directions);
     task.directions = directions_in_triangles(component.mesh, own);
     const std::optional<double> curvature = given_curvature(component.mesh, task.cones);
-    if (options.seamless && curvature) {
+    // A single boundary turns by the curvature inside in any case.
+    if (options.seamless && curvature && component.mesh.boundary_loops.size() > 1) {
       task.has_directed_borders =
           let_borders_run_along(component.mesh, own, task.cones.rotation_order, curvature, task.cones);
     }
