@@ -73,7 +73,8 @@ class SideSearch {
       const double least_l2 = most_l2_;
       most_l2_ = std::max(least_l2, most_growth_for_marked * map_.natural_l2);
       left_ = for_marked;
-      add(0, order_.marked, false);
+      keep_straight();
+      add(order_.straight, order_.marked, false);
       most_l2_ = least_l2;
       if (best_) most_l2_ = std::max(least_l2, largest_l2_straight(l2_of(task_.surface, *best_)));
     }
@@ -92,6 +93,26 @@ class SideSearch {
 
  private:
   static constexpr double most_growth_for_marked = 1.1;  // of the L2 stretch
+
+  // Marked features that are straight already stay so, whatever they have cost.
+  void keep_straight() {
+    if (order_.straight == 0) return;
+    straight_.sides.assign(sides_.begin(), sides_.begin() + order_.straight);
+    ComponentMap kept = with(straight_);
+    if (kept.validity.defects() == 0) {
+      most_l2_ = std::max(most_l2_, l2_of(task_.surface, kept));
+      best_ = std::move(kept);
+    }
+  }
+
+  // The map with these sides.  Throws SOLVER_FAILED.
+  ComponentMap with(const StraightSides& sides) const {
+    ComponentMap out = map_;
+    const auto& [surface, connection, options, before_step] = task_;
+    out.position = straighten(surface, {connection, map_.curvature}, options, before_step, {map_.position, sides});
+    check_positions(surface.mesh, out);
+    return out;
+  }
 
   // Adds sides to those that are straight, as far as that succeeds.  is_known_to_fail: with all of them.  Returns
   // whether it did with all of them.
@@ -121,18 +142,16 @@ class SideSearch {
     --left_;
     StraightSides more = straight_;
     more.sides.insert(more.sides.end(), sides_.begin() + begin, sides_.begin() + end);
-    ComponentMap tried = map_;
-    const auto& [surface, connection, options, before_step] = task_;
+    std::optional<ComponentMap> tried;
     try {
-      tried.position = straighten(surface, {connection, map_.curvature}, options, before_step, {map_.position, more});
-      check_positions(surface.mesh, tried);
+      tried = with(more);
     } catch (const Error& error) {
       if (error.code() != Code::solver_failed) throw;
       return ReleaseReason::contradiction;
     }
-    if (tried.validity.defects() > 0) return ReleaseReason::contradiction;
-    if (l2_of(surface, tried) > most_l2_) return ReleaseReason::stretch;
-    if (!may_overlap_ && overlaps(surface, tried)) return ReleaseReason::contradiction;
+    if (tried->validity.defects() > 0) return ReleaseReason::contradiction;
+    if (l2_of(task_.surface, *tried) > most_l2_) return ReleaseReason::stretch;
+    if (!may_overlap_ && overlaps(task_.surface, *tried)) return ReleaseReason::contradiction;
     straight_ = std::move(more);
     best_ = std::move(tried);
     return std::nullopt;

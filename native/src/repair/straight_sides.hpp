@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 #include "base/array.hpp"
@@ -20,6 +21,9 @@ struct StraightSide {
   double length;
   bool is_inside;          // of a crease
   bool is_marked = false;  // a feature, or a part of one
+
+  // Whether it deviates from its direction by more than rounding.
+  bool is_bent() const { return bend > 1e-9; }
 };
 
 struct StraightSides {
@@ -28,8 +32,9 @@ struct StraightSides {
   Array<StraightSide> sides;
   PerHalfedge<ReleaseReason> reasons{};  // why marked features are not among the sides; empty without
 
-  // Whether any side deviates from its direction by more than rounding.
-  bool is_bent() const;
+  bool is_bent() const {
+    return std::any_of(sides.begin(), sides.end(), [](const StraightSide& side) { return side.is_bent(); });
+  }
 };
 
 // Marked features are along the axes nearest to them, after a rotation that aligns them, from corner to corner.
@@ -49,9 +54,9 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
 Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
                                             const Eigen::VectorXcd& position, const PerTriangle<Index>& island);
 
-// The ends of what is tried first.
+// The ends of what is tried first.  straight: marked features that are already.
 struct SideOrder {
-  std::ptrdiff_t marked, border;
+  std::ptrdiff_t straight, marked, border;
 };
 
 // Orders the sides by what they cost relative to their length, marked features first and creases inside last. A side
