@@ -96,7 +96,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
                               options_.compact};
     if (compact_islands(opened, splitting.mirroring, square, map)) restore_symmetry(opened, splitting, square, map);
   }
-  if (map.natural_l2 > 0) {
+  if (!result_.seamless && map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");
     const bool is_plain = !options_.straighten || component.mesh.closed();
     straighten_islands(

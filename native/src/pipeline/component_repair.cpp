@@ -157,7 +157,7 @@ bool ComponentRepair::may_straighten(const ComponentMap& map) const {
   const bool has_sides = (options_.straighten && !mesh_.closed()) || mesh_.has_features();
   // On a lattice cuts and features have to fit it as well, which is up to the layout.
   const int order = task_.cones.rotation_order;
-  const bool is_free = order == 0 || (order == 4 && map.cut_graph.cuts.empty() && !mesh_.has_features());
+  const bool is_free = order == 0 || (order == 4 && map.cut_graph.cuts.empty());
   return has_sides && is_free && map.validity.defects() == 0 && map.rotation && map.pins.size() < 2 &&
          aligned_edges(mesh_, task_.cones).empty();
 }

@@ -414,7 +414,6 @@ void Mapping::straighten_for_lattice(ComponentMap& map) {
   ComponentRepair repair = repair_on(system_, task_);
   straighten_islands(system_.surface(), SideKinds::with_creases, {options_.stretch, task_.importance}, repair.counter(),
                      map);
-  map.natural_l2 = 0;
 }
 
 std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -11,6 +12,23 @@
 namespace lsgp {
 
 namespace {
+
+// The angle that more than half of the length has exactly; 0 if it is that but for rounding.
+std::optional<double> majority(Array<std::pair<double, double>> angle_and_length) {
+  constexpr double exactly = 1e-9;  // radians
+  std::sort(angle_and_length.begin(), angle_and_length.end());
+  double all = 0, same = 0;
+  for (const auto& [angle, length] : angle_and_length) all += length;
+  for (std::size_t first = 0, end = 0; first < angle_and_length.size(); ++first) {
+    const double angle = angle_and_length[first].first;
+    for (; end < angle_and_length.size() && angle_and_length[end].first < angle + exactly; ++end) {
+      same += angle_and_length[end].second;
+    }
+    if (same > all / 2) return std::abs(angle) < exactly ? 0 : angle;
+    same -= angle_and_length[first].second;
+  }
+  return std::nullopt;
+}
 
 double nearest_quarter_turn(double angle) { return std::round(angle / (M_PI / 2)) * (M_PI / 2); }
 
@@ -170,13 +188,16 @@ Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& fea
   const char least = *std::max_element(feature.begin(), feature.end());
   Complex sum = 0;
   double length = 0;
+  Array<std::pair<double, double>> directions;  // angle to an axis, and length
   for (Index h = 0; h < surface.mesh.halfedge_count(); ++h) {
     if (feature[h] == no_feature || feature[h] < least) continue;
     const Complex edge =
         position[surface.cut_mesh.copy_of_corner[next(h)]] - position[surface.cut_mesh.copy_of_corner[h]];
     sum += std::polar(surface.geometry.length[h], 4 * std::arg(edge));
     length += surface.geometry.length[h];
+    directions.emplace_back(std::remainder(std::arg(edge), M_PI / 2), surface.geometry.length[h]);
   }
+  if (const std::optional<double> angle = majority(std::move(directions))) return std::polar(1.0, -*angle);
   return std::abs(sum) > least_common * length ? std::polar(1.0, -std::arg(sum) / 4) : 1;
 }
 

@@ -28,8 +28,8 @@ struct FeatureLines {
 };
 
 // The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares
-// sense.  feature: the FeatureKind of halfedges.  least_common: where less of their length has a direction in common,
-// as on circles, the result is 1.
+// sense, or exactly, if most of their length has the same direction.  feature: the FeatureKind of halfedges.
+// least_common: where less of their length has a direction in common, as on circles, the result is 1.
 Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position,
                          double least_common = 0);
 

@@ -252,21 +252,6 @@ Array<FoundSide>::iterator along_axes_of(Complex turn, double most_bend, Array<F
 
 bool is_marked(const HalfedgeMesh& mesh, Index h) { return mesh.has_features() && mesh.feature[h]; }
 
-// Whether more than half of the length of features is along the axes already.
-bool is_mostly_along_axes(const CutSurface& surface, const PerHalfedge<char>& feature,
-                          const Eigen::VectorXcd& position) {
-  constexpr double exactly = 1e-9;  // radians
-  double length = 0, along = 0;
-  for (Index h = 0; h < surface.mesh.halfedge_count(); ++h) {
-    if (feature[h] == no_feature) continue;
-    const Complex edge =
-        position[surface.cut_mesh.copy_of_corner[next(h)]] - position[surface.cut_mesh.copy_of_corner[h]];
-    length += surface.geometry.length[h];
-    if (std::abs(off_axis(edge)) < exactly) along += surface.geometry.length[h];
-  }
-  return along > length / 2;
-}
-
 // The marked features, aligned with the axes, as sides of one direction each, and the reasons of those that cannot be.
 void add_marked_sides(const CutSurface& surface, const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position,
                       StraightSides& out) {
@@ -281,7 +266,7 @@ void add_marked_sides(const CutSurface& surface, const Eigen::VectorXd& rotation
   }
   out.reasons.assign(mesh.halfedge_count(), ReleaseReason::contradiction);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
-  if (!is_mostly_along_axes(surface, feature, position)) out.turn = turn_to_features(surface, feature, position);
+  out.turn = turn_to_features(surface, feature, position);
   const FeatureLines lines = trace_features(surface, feature, ends, out.turn * position);
   for (const Index h : lines.curved) out.reasons[h] = ReleaseReason::curved;
   for (const FeatureLine& line : lines.straight) {

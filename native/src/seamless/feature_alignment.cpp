@@ -52,6 +52,7 @@ class FeatureAligner {
   FeatureAlignment align_all(const PerHalfedge<char>& feature);
 
  private:
+  Array<FeatureLine> straight_already(const PerHalfedge<char>& feature) const;
   Array<FeatureLine> compatible(const Array<FeatureLine>& lines);
   void add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen);
   void add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end, Array<char>& chosen);
@@ -89,7 +90,9 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   // Close to an isometry, lines have nearly their final directions.
   const PerVertex<char> fixed(mesh.vertex_count(), 0);
-  task_.minimize(free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed), unaligned_);
+  unaligned_ *= turn_to_features(task_.surface, feature, unaligned_, bounds_.least_common);
+  const Array<FeatureLine> straight = straight_already(feature);
+  task_.minimize(straight.empty() ? free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed) : free_with(straight), unaligned_);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_, bounds_.least_common);
   const FeatureLines traced = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_);
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;
@@ -107,6 +110,14 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
     release_all(std::exchange(out_.lines, {}), ReleaseReason::contradiction);
   }
   return std::move(out_);
+}
+
+// The marked features that are straight along the axes.
+Array<FeatureLine> FeatureAligner::straight_already(const PerHalfedge<char>& feature) const {
+  constexpr double rounding = 1e-9;  // radians
+  Array<FeatureLine> out = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_).straight;
+  out.erase(std::remove_if(out.begin(), out.end(), [](const FeatureLine& line) { return !line.is_marked || line.bend > rounding; }), out.end());
+  return out;
 }
 
 // Lines that do not contradict each other, in their order, those of a higher rank before others. Where not all do, two

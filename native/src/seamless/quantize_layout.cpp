@@ -97,6 +97,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
       cut_graph_(map.get().cut_graph),
       cut_mesh_(map.get().cut_mesh),
       curvature_(map.get().curvature),
+      natural_l2_(map.get().natural_l2),
       demands_(demands),
       before_step_(std::move(before_step)),
       rotation_(*map.get().rotation) {
@@ -205,7 +206,10 @@ void LayoutQuantizer::align_features() {
   const PerHalfedge<char> feature =
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
-  const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
+  // What straight sides have cost already counts.
+  const double l2 = natural_l2_ > 0
+                        ? natural_l2_
+                        : l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
   const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};

@@ -149,6 +149,7 @@ class LayoutQuantizer {
   const CutGraph& cut_graph_;
   const CutMesh& cut_mesh_;
   const Curvature& curvature_;
+  const double natural_l2_;
   const LatticeDemands demands_;
   const PointLattice& lattice_ = demands_.lattice;
   const StepHook before_step_;
