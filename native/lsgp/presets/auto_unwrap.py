@@ -218,7 +218,7 @@ def crease_choices(
     if options.border != "free" or options.loop_turning:
         return CreaseChoices(surface)
     if options.seamless is not None:
-        is_free = given.is_free and not len(surface.features) and follows_features(surface, options)
+        is_free = given.is_free and follows_features(surface, options)
         further = crease_borders(surface, sharp=sharp) if is_free else ()
         return CreaseChoices(surface, further if len(further) else None, preset)
     if most_corners is None:

@@ -136,7 +136,8 @@ class FullerSquare:
 
 @dataclass(frozen=True, slots=True)
 class AlongLattice:
-    """Seamless maps of the surface whose creases run along the lattice, at little stretch and with large tiles.
+    """Seamless maps of the surface whose marked features, or creases if none are marked, run along the lattice, at
+    little stretch and with large tiles.
 
     components: of the surface. borders: (b, 2), the possible ones.
     """
@@ -169,7 +170,9 @@ class AlongLattice:
         return is_some & (is_large or len(self.components.surface.triangles) <= SMALL_MESH)
 
     def _creases(self, *results: Result) -> IndexArray:
-        """The possible borders and the creases found in any of these, (e, 2)."""
+        """The marked features, (e, 2), or the possible borders and the creases found in any of these."""
+        if len(self.components.surface.features):
+            return self.components.surface.features
         edges = np.concatenate([self.borders, *(result.seamless.creases for result in results)])
         return edges[np.unique(keys_of(edges, self.components.surface), return_index=True)[1]]
 

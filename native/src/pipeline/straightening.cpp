@@ -98,18 +98,20 @@ class SideSearch {
   void keep_straight() {
     if (order_.straight == 0) return;
     straight_.sides.assign(sides_.begin(), sides_.begin() + order_.straight);
-    ComponentMap kept = with(straight_);
+    ComponentMap kept = with(straight_, map_);
     if (kept.validity.defects() == 0) {
       most_l2_ = std::max(most_l2_, l2_of(task_.surface, kept));
       best_ = std::move(kept);
     }
   }
 
-  // The map with these sides.  Throws SOLVER_FAILED.
-  ComponentMap with(const StraightSides& sides) const {
+  // The map with these sides, sought from the original one or one that is turned already.  Throws SOLVER_FAILED.
+  ComponentMap with(const StraightSides& sides, const ComponentMap& start) const {
     ComponentMap out = map_;
     const auto& [surface, connection, options, before_step] = task_;
-    out.position = straighten(surface, {connection, map_.curvature}, options, before_step, {map_.position, sides});
+    StraightSides turned = sides;
+    if (&start != &map_) turned.turn = 1;
+    out.position = straighten(surface, {connection, map_.curvature}, options, before_step, {start.position, turned});
     check_positions(surface.mesh, out);
     return out;
   }
@@ -137,14 +139,23 @@ class SideSearch {
     }
   }
 
-  // None if these sides are straight then, as well; otherwise why they are not.
+  // None if these sides are straight then, as well; otherwise why they are not. Features that bend much are found
+  // beside those that are straight, or else from the map as it was.
   std::optional<ReleaseReason> tries(std::ptrdiff_t begin, std::ptrdiff_t end) {
     --left_;
     StraightSides more = straight_;
     more.sides.insert(more.sides.end(), sides_.begin() + begin, sides_.begin() + end);
+    std::optional<ReleaseReason> reason = ReleaseReason::contradiction;
+    if (best_ && end <= order_.marked) reason = tries_from(*best_, more);
+    if (reason == ReleaseReason::contradiction) reason = tries_from(map_, more);
+    if (!reason) straight_ = std::move(more);
+    return reason;
+  }
+
+  std::optional<ReleaseReason> tries_from(const ComponentMap& start, const StraightSides& sides) {
     std::optional<ComponentMap> tried;
     try {
-      tried = with(more);
+      tried = with(sides, start);
     } catch (const Error& error) {
       if (error.code() != Code::solver_failed) throw;
       return ReleaseReason::contradiction;
@@ -152,7 +163,6 @@ class SideSearch {
     if (tried->validity.defects() > 0) return ReleaseReason::contradiction;
     if (l2_of(task_.surface, *tried) > most_l2_) return ReleaseReason::stretch;
     if (!may_overlap_ && overlaps(task_.surface, *tried)) return ReleaseReason::contradiction;
-    straight_ = std::move(more);
     best_ = std::move(tried);
     return std::nullopt;
   }

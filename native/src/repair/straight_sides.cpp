@@ -374,7 +374,8 @@ Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutM
 
 SideOrder sort_by_cost(StraightSides& straight) {
   const auto rank = [](const StraightSide& side) {
-    return std::tuple(!side.is_marked, side.is_marked && side.is_bent(), side.is_inside && !side.is_marked, side.bend * side.bend * side.length);
+    return std::tuple(!side.is_marked, side.is_marked && side.is_bent(), side.is_inside && !side.is_marked,
+                      side.bend * side.bend * side.length);
   };
   std::stable_sort(straight.sides.begin(), straight.sides.end(),
                    [&](const StraightSide& a, const StraightSide& b) { return rank(a) < rank(b); });

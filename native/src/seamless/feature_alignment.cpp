@@ -92,7 +92,9 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   const PerVertex<char> fixed(mesh.vertex_count(), 0);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_, bounds_.least_common);
   const Array<FeatureLine> straight = straight_already(feature);
-  task_.minimize(straight.empty() ? free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed) : free_with(straight), unaligned_);
+  task_.minimize(
+      straight.empty() ? free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed) : free_with(straight),
+      unaligned_);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_, bounds_.least_common);
   const FeatureLines traced = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_);
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;
@@ -116,7 +118,9 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
 Array<FeatureLine> FeatureAligner::straight_already(const PerHalfedge<char>& feature) const {
   constexpr double rounding = 1e-9;  // radians
   Array<FeatureLine> out = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_).straight;
-  out.erase(std::remove_if(out.begin(), out.end(), [](const FeatureLine& line) { return !line.is_marked || line.bend > rounding; }), out.end());
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [](const FeatureLine& line) { return !line.is_marked || line.bend > rounding; }),
+            out.end());
   return out;
 }
 
