@@ -48,7 +48,7 @@ def creases_of(obj):
 
 
 @pytest.mark.parametrize("model", PARAMETERS, ids=lambda model: model.__name__)
-@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+@pytest.mark.parametrize("preset", ["PAINT", *one_blender("BAKE")])
 def test_densities_are_alike_nothing_overlaps_and_one_line_is_said(model, preset, reports):
     objects, maps, said = unwrapped(model, preset, reports)
     # Of objects that share a mesh the first decides, whose scale is 1.
