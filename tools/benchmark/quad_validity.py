@@ -23,14 +23,16 @@ from typing import NamedTuple
 
 import lsgp
 import numpy as np
+from numpy.typing import NDArray
 from own_process import in_own_process
 from placement_quality import SHARED, read_surface
-from quad_checks import require_closed_quads, require_on_surface, vertex_angles
+from quad_checks import require_closed_quads, require_on_surface
+from quad_meshes import mesh_files
 from scipy.spatial import cKDTree
 
 COLUMNS = ("mesh", "triangles", "asked", "quads", "irregular", "valid", "same bytes", "s", "told")
-SUFFIXES = (".obj", ".off")
 NEAR = 1e-9  # of the diagonal
+WHOLE = 1e-3  # quarter turns
 
 
 class Found(NamedTuple):
@@ -86,8 +88,7 @@ def passes(check: Callable[[], None]) -> bool:
 def require_cones_of_layout(made: lsgp.QuadRemesh) -> None:
     """By place, since cones may be at vertices that the given surface does not have."""
     size = np.linalg.norm(np.ptp(made.surface.positions, axis=0))
-    angles = vertex_angles(made.surface, made.layout.corner_uv)
-    turns = np.round(angles).astype(int)
+    turns = quarter_turns(made.surface, made.layout.corner_uv)
     cones = np.flatnonzero((turns != 4) & np.isin(np.arange(len(turns)), made.surface.triangles))
     irregular = made.mesh.irregular
     assert len(cones) == len(irregular)
@@ -98,12 +99,15 @@ def require_cones_of_layout(made: lsgp.QuadRemesh) -> None:
     assert np.array_equal(turns[cones][at], made.mesh.valences[irregular])
 
 
-def files(paths: list[Path]) -> list[Path]:
-    found = []
-    for path in paths:
-        inside = sorted(file for file in path.iterdir() if file.suffix in SUFFIXES) if path.is_dir() else [path]
-        found.extend(inside)
-    return found
+def quarter_turns(surface: lsgp.Surface, corner_uv: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Around each vertex of a layout, of which triangles may be given in either orientation."""
+    ahead, back = np.roll(corner_uv, -1, axis=1) - corner_uv, np.roll(corner_uv, 1, axis=1) - corner_uv
+    across = np.abs(ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0])
+    angles = np.arctan2(across, (ahead * back).sum(axis=-1)).ravel() / (np.pi / 2)
+    sums = np.bincount(surface.triangles.ravel(), angles, len(surface.positions))
+    turns = np.round(sums)
+    assert np.abs(sums - turns).max() < WHOLE
+    return turns.astype(np.int64)
 
 
 def row(surface: lsgp.Surface, quads: int, limit: float, once: bool) -> list[str]:
@@ -127,7 +131,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print(f"| {' | '.join(COLUMNS)} |")
     print("|---|" + "--:|" * 4 + "---|---|--:|---|")
-    for file in files(arguments.paths):
+    for file in mesh_files(arguments.paths):
         surface = read_surface(file)
         for quads in arguments.quads:
             cells = row(surface, quads, arguments.limit, arguments.once)

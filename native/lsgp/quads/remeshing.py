@@ -234,7 +234,7 @@ class _Layouts:
         does not follow fewer features.  first: the layout on the first grid, if known."""
         side, done = self._options.seamless.tile_size, 0.5
         layout = nearest = self.first(share_of(progress, 0.0, done)) if first is None else first
-        if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
+        if target is None or _is_refined(layout):
             return layout
         sides: dict[bool, float] = {}  # the last one with fewer quads than the target, and with more
         for near in _NEAR_ENOUGH:
@@ -264,8 +264,6 @@ class _Layouts:
         done, places, fewest = 0.0, None, None
         for refinement in range(_MOST_REFINEMENTS + 1):
             half = (1 + done) / 2
-            if fewest is not None and _quad_count(layout) > _MORE_QUADS * len(fewest[0].quads):
-                break
             try:
                 mesh = self._extract(layout, asked, share_of(progress, done, half))
             except SolverError as error:
@@ -277,6 +275,8 @@ class _Layouts:
             divided = self._with_divided_rows(layout, asked)
             if divided is not None and (fewest is None or len(divided.quads) < len(fewest[0].quads)):
                 fewest = divided, layout
+            if fewest is not None and _quad_count(layout) / _FINER**2 > _MORE_QUADS * len(fewest[0].quads):
+                break
             done = (1 + half) / 2
             layout = self._lay_out(_FINER * layout.seamless.tile_size, share_of(progress, half, done))
         mesh, layout = fewest
@@ -345,7 +345,8 @@ def _whole_or_between(
     layouts = _Layouts(solver, cones, options)
     layout = layouts.nearest(target, share_of(progress, 0.0, 0.5))
     has_features = layout.features is not None or layout.seamless.feature_share is not None
-    if not has_features or runs_along_features(layout):
+    # A grid that was refined for its cones is fine enough for the features that can be followed.
+    if not has_features or runs_along_features(layout) or _is_refined(layout):
         return layouts, layout
     between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
     other = between.nearest(target, share_of(progress, 0.5, 1.0))
@@ -458,6 +459,10 @@ def _refuse_far_above(asked: float, layout: Result) -> None:
         f"quads of one size. Use fewer cones, ask for a number (target, or --target), {quads} for as many, or remesh "
         "components by themselves.",
     )
+
+
+def _is_refined(layout: Result) -> bool:
+    return any(finding.code == "GRID_REFINED" for finding in layout.warnings)
 
 
 def _quad_count(layout: Result) -> int:
