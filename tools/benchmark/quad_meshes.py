@@ -3,11 +3,11 @@
 
     PYTHONPATH=tests python tools/benchmark/quad_meshes.py [--bpy PYTHON] [--quads N ...] [--limit SECONDS] [PATH ...]
 
-PATH is an OBJ or OFF file, or a folder of them (default: ../shared/meshes and its folder hard); open and
-one-sided surfaces are left out. --bpy names a Python with bpy; without it only our meshes are measured. Each mesh is made in a process of its own,
-which is ended after SECONDS of wall time. *Valid*: only quads of four vertices, every edge in two of them with opposite
-directions, one fan of quads at each vertex, the surface's Euler characteristic; otherwise what is not so. Needs the
-lsgp wheel and scipy.
+PATH is an OBJ or OFF file, or a folder of them (default: ../shared/meshes and its folder hard); open and one-sided
+surfaces are left out. --bpy names a Python with bpy; without it only our meshes are measured. Each mesh is made in a
+process of its own, which is ended after SECONDS of wall time. *Valid*: only quads of four vertices, every edge in two
+of them with opposite directions, one fan of quads at each vertex, the surface's Euler characteristic; otherwise what is
+not so. Needs the lsgp wheel and scipy.
 """
 
 from __future__ import annotations
