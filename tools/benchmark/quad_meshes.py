@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Quad meshes beside those of Blender's QuadriFlow: a Markdown table.
 
-    PYTHONPATH=tests python tools/benchmark/quad_meshes.py [--bpy PYTHON] [--quads N ...] [--limit SECONDS] [PATH ...]
+    PYTHONPATH=tests python tools/benchmark/quad_meshes.py [PATH ...] [--bpy PYTHON] [--quads N ...] [--limit SECONDS]
 
 PATH is an OBJ or OFF file, or a folder of them (default: ../shared/meshes and its folder hard); open and one-sided
 surfaces are left out. --bpy names a Python with bpy; without it only our meshes are measured. Each mesh is made in a

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether meshes of quads are valid, by checks that do not use the library: a Markdown table.
 
-    PYTHONPATH=tests python tools/benchmark/quad_validity.py [--quads N ...] [--limit SECONDS] [--once] [PATH ...]
+    PYTHONPATH=tests python tools/benchmark/quad_validity.py [PATH ...] [--quads N ...] [--limit SECONDS] [--once]
 
 PATH is an OBJ or OFF file, or a folder of them (default: ../shared/meshes and its folder hard). Every mesh is made in
 processes of their own with one thread and with two, each of which is ended after SECONDS; seconds are CPU time of the
