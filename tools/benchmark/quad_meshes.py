@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Quad meshes beside those of Blender's QuadriFlow: a Markdown table.
 
-    PYTHONPATH=tests python tools/benchmark/quad_meshes.py [--bpy PYTHON] [--quads N ...] [FOLDER]
+    PYTHONPATH=tests python tools/benchmark/quad_meshes.py [PATH ...] [--bpy PYTHON] [--quads N ...] [--limit SECONDS]
 
-FOLDER holds closed meshes (default: ../shared/meshes); those that are missing are left out. --bpy names a Python with
-bpy; without it only our meshes are measured. Needs the lsgp wheel and scipy.
+PATH is an OBJ or OFF file, or a folder of them (default: ../shared/meshes and its folder hard); open and one-sided
+surfaces are left out. --bpy names a Python with bpy; without it only our meshes are measured. Each mesh is made in a
+process of its own, which is ended after SECONDS of wall time. *Valid*: only quads of four vertices, every edge in two
+of them with opposite directions, one fan of quads at each vertex, the surface's Euler characteristic; otherwise what is
+not so. Needs the lsgp wheel and scipy.
 """
 
 from __future__ import annotations
@@ -20,13 +23,20 @@ from typing import NamedTuple
 import lsgp
 import numpy as np
 import oracle
+from meshes import euler_characteristic
 from numpy.typing import NDArray
-from placement_quality import SHARED
+from own_process import in_own_process
+from placement_quality import SHARED, read_surface
+from quad_checks import fans, sides
 from scipy.spatial import cKDTree
 
-MODELS = ("fandisk", "kitten-genus1", "hand-5k", "max-planck-25k", "elephant-genus3")
 IN_BLENDER = Path(__file__).with_name("quads_in_blender.py")
-LONGEST = 500  # seconds
+NOT_CLOSED = ("OPEN_SURFACE", "NOT_ORIENTABLE")
+SUFFIXES = (".obj", ".off")
+COLUMNS = (
+    *("mesh", "asked", "", "s", "quads", "valid", "irregular", "corners off, mean / worst", "edges"),
+    *("distance, mean", "worst", "creases"),
+)
 SAMPLES = 12  # along a side of a quad, and along a crease
 SHARP, PARALLEL, NEAR = np.radians(40), np.radians(20), 0.1
 
@@ -34,28 +44,75 @@ Points = NDArray[np.float64]
 
 
 class Quads(NamedTuple):
+    """Faces of four vertices, the number of other ones, and seconds of wall time."""
+
     positions: Points
     faces: NDArray[np.int64]
+    others: int
     seconds: float
 
 
-def ours(surface: lsgp.Surface, quads: int) -> Quads:
-    before = time.perf_counter()
-    mesh = lsgp.remesh_to_quads(surface, target=quads).mesh
-    return Quads(mesh.positions, mesh.quads.astype(np.int64), time.perf_counter() - before)
+Made = Quads | str  # or why there are none
 
 
-def quadriflow(python: str) -> Callable[[lsgp.Surface, int], Quads]:
-    def remesh(surface: lsgp.Surface, quads: int) -> Quads:
+def mesh_files(paths: list[Path]) -> list[Path]:
+    """These files, and those in these folders."""
+    found = []
+    for path in paths:
+        inside = sorted(file for file in path.iterdir() if file.suffix in SUFFIXES) if path.is_dir() else [path]
+        found.extend(inside)
+    return found
+
+
+def ours(surface: lsgp.Surface, quads: int, limit: float) -> Made:
+    def remesh() -> Made:
+        before = time.perf_counter()
+        try:
+            mesh = lsgp.remesh_to_quads(surface, target=quads).mesh
+        except lsgp.LsgpError as error:
+            return error.code
+        return Quads(mesh.positions, mesh.quads.astype(np.int64), 0, time.perf_counter() - before)
+
+    return in_own_process(remesh, limit, f"> {limit:g} s", "crash")
+
+
+def quadriflow(python: str) -> Callable[[lsgp.Surface, int, float], Made]:
+    def remesh(surface: lsgp.Surface, quads: int, limit: float) -> Made:
         with tempfile.TemporaryDirectory() as folder:
             source, target = Path(folder, "surface.npz"), Path(folder, "mesh.npz")
             np.savez(source, positions=surface.positions, triangles=surface.triangles)
             command = [python, str(IN_BLENDER), str(source), str(quads), str(target)]
-            subprocess.run(command, check=True, capture_output=True, timeout=LONGEST)
+            try:
+                subprocess.run(command, check=True, capture_output=True, timeout=limit)
+            except subprocess.TimeoutExpired:
+                return f"> {limit:g} s"
+            except subprocess.CalledProcessError:
+                return "crash"
             found = np.load(target)
-            return Quads(found["positions"], found["faces"], float(found["seconds"]))
+            if not len(found["faces"]):
+                return "none"
+            return Quads(found["positions"], found["faces"], int(found["others"]), float(found["seconds"]))
 
     return remesh
+
+
+def defects(surface: lsgp.Surface, quads: Quads) -> str:
+    """What makes the mesh invalid."""
+    found = []
+    if quads.others:
+        found.append(f"{quads.others} no quads")
+    if any(len(set(quad)) < 4 for quad in quads.faces.tolist()):
+        found.append("repeated vertices")
+    once = sides(quads.faces)
+    is_closed = set(once.values()) == {1} and all((b, a) in once for a, b in once)
+    used = len(np.unique(quads.faces))
+    if not is_closed or fans(quads.faces) != used:
+        found.append("no closed manifold")
+    edges = len({(min(side), max(side)) for side in once})
+    euler, kept = euler_characteristic(surface.triangles), used - edges + len(quads.faces)
+    if not quads.others and kept != euler:
+        found.append(f"Euler {kept} for {euler}")
+    return ", ".join(found)
 
 
 def irregular(quads: Quads) -> int:
@@ -124,14 +181,16 @@ def kept_share(surface: lsgp.Surface, quads: Quads) -> float:
     return float(weight[kept].sum() / weight.sum())
 
 
-def cells(surface: lsgp.Surface, quads: Quads) -> Iterator[str]:
-    if not len(quads.faces):
+def cells(surface: lsgp.Surface, quads: Made) -> Iterator[str]:
+    if isinstance(quads, str):
+        yield quads
         yield from ["-"] * 8
         return
     quality, away = lsgp.quad_quality(quads.positions, quads.faces), distances(surface, quads)
     size = np.linalg.norm(np.ptp(surface.positions, axis=0))
     yield f"{quads.seconds:.1f}"
     yield str(len(quads.faces))
+    yield defects(surface, quads) or "yes"
     yield str(irregular(quads))
     yield f"{np.degrees(quality.angle_error):.1f} / {np.degrees(quality.worst_angle_error):.0f}"
     yield f"{quality.edge_deviation:.2f}"
@@ -143,26 +202,24 @@ def cells(surface: lsgp.Surface, quads: Quads) -> Iterator[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, default=SHARED)
+    parser.add_argument("paths", nargs="*", metavar="PATH", type=Path, default=[SHARED, SHARED / "hard"])
     parser.add_argument("--bpy", metavar="PYTHON", help="a Python with bpy")
     parser.add_argument("--quads", metavar="N", type=int, nargs="+", default=[500, 2000, 10000])
+    parser.add_argument("--limit", metavar="SECONDS", type=float, default=150, help="of each process (default: 150)")
     arguments = parser.parse_args()
     makers = {"ours": ours}
     if arguments.bpy:
         makers["QuadriFlow"] = quadriflow(arguments.bpy)
-    print(
-        "| | asked | | s | quads | irregular | corners off, mean / worst | edges | distance, mean | worst | creases |"
-    )
-    print("|---|--:|---|" + "--:|" * 8)
-    for name in MODELS:
-        file = arguments.folder / f"{name}.obj"
-        if not file.is_file():
-            continue
-        surface = lsgp.read_mesh_file(str(file)).surface()
+    print(f"| {' | '.join(COLUMNS)} |")
+    print("|---|--:|---|--:|--:|---|" + "--:|" * 6)
+    for file in mesh_files(arguments.paths):
+        surface = read_surface(file)
         for quads in arguments.quads:
             for maker, make in makers.items():
-                row = [name, str(quads), maker, *cells(surface, make(surface, quads))]
-                print(f"| {' | '.join(row)} |", flush=True)
+                made = make(surface, quads, arguments.limit)
+                if made in NOT_CLOSED:
+                    break
+                print(f"| {' | '.join([file.stem, str(quads), maker, *cells(surface, made)])} |", flush=True)
 
 
 if __name__ == "__main__":

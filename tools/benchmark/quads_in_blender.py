@@ -3,8 +3,8 @@
 
     python tools/benchmark/quads_in_blender.py SURFACE.npz QUADS MESH.npz
 
-SURFACE.npz: positions (n, 3), triangles (m, 3). MESH.npz receives positions (v, 3), faces (q, 4) and seconds, of wall
-time; its faces are empty if QuadriFlow gives up.
+SURFACE.npz: positions (n, 3), triangles (m, 3). MESH.npz receives positions (v, 3), faces (q, 4) of four vertices,
+others, the number of the rest, and seconds, of wall time; there are no faces if QuadriFlow gives up.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ def main(source: str, quads: str, target: str) -> None:
     mesh, seconds = remesh(arrays["positions"], arrays["triangles"], int(quads))
     positions = np.array([vertex.co for vertex in mesh.vertices]).reshape(-1, 3)
     faces = np.array([list(face.vertices) for face in mesh.polygons if len(face.vertices) == 4], np.int64)
-    np.savez(target, positions=positions, faces=faces.reshape(-1, 4), seconds=seconds)
+    others = len(mesh.polygons) - len(faces)
+    np.savez(target, positions=positions, faces=faces.reshape(-1, 4), others=others, seconds=seconds)
 
 
 if __name__ == "__main__":

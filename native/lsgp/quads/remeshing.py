@@ -34,9 +34,9 @@ from .quad_rows import QuadLines
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
 _PLACED, _LAID_OUT = 0.6, 0.95
-# Of the time of placing, where cones for creases are placed, and of that of layouts, where those along creases and the
-# plain one end.
-_FOR_FEATURES, _ALONG, _PLAIN = 0.1, 0.4, 0.6
+# Of the time of placing, where cones for creases are placed, and of that of layouts, where the plain one and then those
+# along creases through these cones end.
+_FOR_FEATURES, _PLAIN, _ALONG = 0.1, 0.2, 0.6
 # And of these layouts, where those on the given surface end, and those on one with long edges divided begin.
 _ON_GIVEN = 0.6
 # Rows of quads along all creases may cost as much L2 stretch, along some of them accordingly less.
@@ -234,7 +234,7 @@ class _Layouts:
         does not follow fewer features.  first: the layout on the first grid, if known."""
         side, done = self._options.seamless.tile_size, 0.5
         layout = nearest = self.first(share_of(progress, 0.0, done)) if first is None else first
-        if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
+        if target is None or _is_refined(layout):
             return layout
         sides: dict[bool, float] = {}  # the last one with fewer quads than the target, and with more
         for near in _NEAR_ENOUGH:
@@ -264,8 +264,6 @@ class _Layouts:
         done, places, fewest = 0.0, None, None
         for refinement in range(_MOST_REFINEMENTS + 1):
             half = (1 + done) / 2
-            if fewest is not None and _quad_count(layout) > _MORE_QUADS * len(fewest[0].quads):
-                break
             try:
                 mesh = self._extract(layout, asked, share_of(progress, done, half))
             except SolverError as error:
@@ -277,6 +275,8 @@ class _Layouts:
             divided = self._with_divided_rows(layout, asked)
             if divided is not None and (fewest is None or len(divided.quads) < len(fewest[0].quads)):
                 fewest = divided, layout
+            if fewest is not None and _quad_count(layout) / _FINER**2 > _MORE_QUADS * len(fewest[0].quads):
+                break
             done = (1 + half) / 2
             layout = self._lay_out(_FINER * layout.seamless.tile_size, share_of(progress, half, done))
         mesh, layout = fewest
@@ -323,13 +323,16 @@ def _along_features(
     or where these gain less, through the usual ones; plain layouts where both cost much more for what they follow."""
     solver, target, options = asked
     for_features, usual = cones
-    found = or_none(lambda: _whole_or_between(solver, target, for_features, options, share_of(progress, 0.0, _ALONG)))
     plain = _Layouts(solver, usual, replace(options, straighten=False))
-    first = plain.first(share_of(progress, _ALONG, _PLAIN))
+    first = plain.first(share_of(progress, 0.0, _PLAIN))
+    found = None
+    if len(solver.surface.features) or _may_be_affordable(solver, for_features, options, first, progress):
+        along = share_of(progress, _PLAIN, _ALONG)
+        found = or_none(lambda: _whole_or_between(solver, target, for_features, options, along))
     affordable = [found] if found is not None and _is_affordable(found[1], first) else []
     if affordable and not releases_many_features(affordable[0][1]):
         return affordable[0]
-    others = _whole_or_between(solver, target, usual, options, share_of(progress, _PLAIN, 1.0))
+    others = _whole_or_between(solver, target, usual, options, share_of(progress, _ALONG, 1.0))
     if _is_affordable(others[1], first):
         affordable.insert(0, others)
     if not affordable:
@@ -345,11 +348,21 @@ def _whole_or_between(
     layouts = _Layouts(solver, cones, options)
     layout = layouts.nearest(target, share_of(progress, 0.0, 0.5))
     has_features = layout.features is not None or layout.seamless.feature_share is not None
-    if not has_features or runs_along_features(layout):
+    # A grid that was refined for its cones is fine enough for the features that can be followed.
+    if not has_features or runs_along_features(layout) or _is_refined(layout):
         return layouts, layout
     between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
     other = between.nearest(target, share_of(progress, 0.5, 1.0))
     return (between, other) if feature_share(other) > feature_share(layout) else (layouts, layout)
+
+
+def _may_be_affordable(
+    solver: Solver, cones: CompletedCones, options: Options, plain: Result, progress: Progress | None
+) -> bool:
+    """Whether these cones by themselves cost less stretch than following creases may: rows along them take more."""
+    alone = _Layouts(solver, cones, replace(options, straighten=False))
+    layout = or_none(lambda: alone.first(share_of(progress, _PLAIN, _PLAIN)))
+    return layout is not None and layout.distortion.l2_stretch <= _MOST_L2_ALONG * plain.distortion.l2_stretch
 
 
 def _missed(layout: Result, target: int) -> float:
@@ -458,6 +471,10 @@ def _refuse_far_above(asked: float, layout: Result) -> None:
         f"quads of one size. Use fewer cones, ask for a number (target, or --target), {quads} for as many, or remesh "
         "components by themselves.",
     )
+
+
+def _is_refined(layout: Result) -> bool:
+    return any(finding.code == "GRID_REFINED" for finding in layout.warnings)
 
 
 def _quad_count(layout: Result) -> int:

@@ -263,14 +263,19 @@ Eigen::VectorXcd FreedomSystem::expand(const Eigen::VectorXd& values) const {
   return out;
 }
 
-Eigen::VectorXd FreedomSystem::coefficients_of(const CoordinateForm& form) const {
+Eigen::SparseMatrix<double> FreedomSystem::coefficients_of(const Array<CoordinateForm>& forms) const {
   // The imaginary part of factor * (u + i v) is Im(factor) u + Re(factor) v.
-  Eigen::VectorXd of_coordinates = Eigen::VectorXd::Zero(coordinates_.rows());
-  for (const auto& [copy, factor] : form) {
-    of_coordinates[2 * copy] += factor.imag();
-    of_coordinates[2 * copy + 1] += factor.real();
+  Array<Eigen::Triplet<double>> entries;
+  for (Index i = 0; i < ssize(forms); ++i) {
+    for (const auto& [copy, factor] : forms[i]) {
+      entries.emplace_back(2 * copy, i, factor.imag());
+      entries.emplace_back(2 * copy + 1, i, factor.real());
+    }
   }
-  return coordinates_.transpose() * of_coordinates;
+  Eigen::SparseMatrix<double> of_coordinates(coordinates_.rows(), ssize(forms));
+  of_coordinates.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> transposed = coordinates_.transpose();
+  return (transposed * of_coordinates).pruned();
 }
 
 }  // namespace lsgp

@@ -44,8 +44,8 @@ class FreedomSystem {
   Eigen::VectorXcd fit(const Jacobians& jacobians) const;
   // The positions, (copies), from (rows) numbers.
   Eigen::VectorXcd expand(const Eigen::VectorXd& values) const;
-  // The coefficients of a coordinate, (rows).
-  Eigen::VectorXd coefficients_of(const CoordinateForm& form) const;
+  // The coefficients of coordinates, (rows, forms).
+  Eigen::SparseMatrix<double> coefficients_of(const Array<CoordinateForm>& forms) const;
 
  private:
   const CutSurface& surface_;

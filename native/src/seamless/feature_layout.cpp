@@ -278,16 +278,12 @@ void FeatureLayout::find_coordinates() {
   fixed.fixed = held_translation_;
   system_.emplace(task_.surface, free_along(task_.surface, reduction, fixed));
   factor_.emplace(system_->dirichlet().triangularView<Eigen::Lower>());
-  coefficients_.resize(system_->dirichlet().rows(), ssize(rounded_));
-  for (std::ptrdiff_t i = 0; i < ssize(rounded_); ++i) {
-    const Eigen::VectorXd column = system_->coefficients_of(rounded_[i]);
-    coefficients_.startVec(i);
-    if (column.cwiseAbs().maxCoeff() < least_response) continue;  // held
-    for (Eigen::Index row = 0; row < column.size(); ++row) {
-      if (column[row] != 0) coefficients_.insertBack(row, i) = column[row];
-    }
+  coefficients_ = system_->coefficients_of(rounded_);
+  for (Eigen::Index i = 0; i < coefficients_.cols(); ++i) {
+    if (Eigen::VectorXd(coefficients_.col(i)).cwiseAbs().maxCoeff() < least_response)
+      coefficients_.col(i) *= 0;  // held
   }
-  coefficients_.finalize();
+  coefficients_.prune(0.0);
   compliance_.resize(ssize(rounded_), ssize(rounded_));
   constexpr Eigen::Index at_once = 16;
   for (Eigen::Index i = 0; i < compliance_.cols(); i += at_once) {
@@ -295,15 +291,21 @@ void FeatureLayout::find_coordinates() {
     const Eigen::MatrixXd forces(coefficients_.middleCols(i, width));
     compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
   }
-  const auto of_lines = compliance_.topLeftCorner(line_count_, line_count_);
-  whole_values_ = WholeValues::among(of_lines);
-  Eigen::VectorXd units = Eigen::VectorXd::Ones(line_count_);
-  units.tail(line_count_ - lattice_count_).setConstant(1 / fine_step);
-  fine_values_ = WholeValues::among(units.asDiagonal() * of_lines * units.asDiagonal());
+  whole_values_ = WholeValues::among(compliance_.topLeftCorner(line_count_, line_count_));
+  are_fine_values_known_ = false;
   fixed.fixed = rounded_;
   held_corners_ = free_along(task_.surface, reduction, fixed);
   fixed.fixed.resize(line_count_);
   held_ = free_along(task_.surface, reduction, fixed);
+}
+
+// Only layouts that need not be whole take them.
+void FeatureLayout::find_fine_values() {
+  if (std::exchange(are_fine_values_known_, true)) return;
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(line_count_);
+  units.tail(line_count_ - lattice_count_).setConstant(1 / fine_step);
+  const auto of_lines = compliance_.topLeftCorner(line_count_, line_count_);
+  fine_values_ = WholeValues::among(units.asDiagonal() * of_lines * units.asDiagonal());
 }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
@@ -418,6 +420,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
     if (out && accepts(*out)) return out;
   }
   if (must_be_whole) return std::nullopt;
+  find_fine_values();
   const std::optional<Choice> fine_lines = choose(density, Rounding::fine);
   if (!fine_lines) return std::nullopt;
   // The same values would fail in the same way.

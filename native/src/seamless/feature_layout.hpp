@@ -73,6 +73,7 @@ class FeatureLayout {
   void find_lattice_coordinates();
   void find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same);
   void find_corners(const Array<char>& is_on_line);
+  void find_fine_values();
   // None where rounding lines costs `too_much` or more.
   std::optional<Choice> round(double scale, Rounding rounding, double too_much) const;
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
@@ -94,7 +95,7 @@ class FeatureLayout {
   // their ends and corners.
   Array<CoordinateForm> rounded_;
   std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, distance_count_ = 0, line_count_ = 0;  // ends of the first ones
-  bool may_shift_ = false, is_large_ = false;
+  bool may_shift_ = false, is_large_ = false, are_fine_values_known_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
   struct Loosened {
     Array<FeatureLine> lines;

@@ -287,6 +287,8 @@ LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
     return start_[sisters.right] - turn[cut] * start_[sisters.left];
   };
   const Eigen::Index count = static_cast<Eigen::Index>(reduction_.integers.size());
+  // Slopes have few terms of hundreds, and a product with all of the basis for each corner takes seconds.
+  const Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> basis = reduction_.basis;
   std::map<std::pair<Index, Index>, double> nearest;
   for (const auto& corners : triangulation->triangles) {
     MovingTriangle triangle;
@@ -302,7 +304,10 @@ LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
         slope += coefficient * reduction_.translation.row(cut);
         at_start[c] += coefficient * translation_at_start(cut);
       }
-      triangle.slope[c] = slope * reduction_.basis;
+      triangle.slope[c] = Eigen::RowVectorXcd::Zero(basis.cols());
+      for (Eigen::Index k = 0; k < count; ++k) {
+        if (slope[k] != 0.0) triangle.slope[c] += slope[k] * basis.row(k);
+      }
     }
     out.triangles.push_back(std::move(triangle));
     for (std::size_t c = 0; c < 3; ++c) {

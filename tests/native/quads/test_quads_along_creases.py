@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 
 import lsgp
@@ -112,6 +112,17 @@ def test_they_are_a_closed_manifold_whose_irregular_vertices_are_the_cones(name:
     turns = np.round(found.layout.cone_angles / (np.pi / 2)).astype(int)
     assert sorted(turns[turns != 4].tolist()) == sorted(found.mesh.valences[found.mesh.irregular].tolist())
     assert len(found.mesh.quads) == pytest.approx(target, rel=0.15)
+
+
+@pytest.mark.parametrize("name", ["cube of twelve triangles", "beveled block", "cylinder", "L"])
+def test_the_same_bytes_along_creases_for_any_number_of_threads(name: str) -> None:
+    seen = []
+    for threads in (1, 2):
+        options = lsgp.Options(seamless=lsgp.Seamless(), straighten=True, threads=threads)
+        remesh = lsgp.remesh_to_quads(surface(SOLIDS[name]), target=1000, options=options)
+        assert remesh.layout.seamless.feature_share > 0.9
+        seen.append([getattr(remesh.mesh, field.name).tobytes() for field in fields(remesh.mesh)])
+    assert seen[0] == seen[1]
 
 
 def chamfered(size: tuple[float, float, float], width: float, every: int) -> Mesh:
