@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The angles next to cones, without overlaps, and the scale of the distortion."""
+"""The angles next to cones and directions, without overlaps, and the scale of the distortion."""
 
 from __future__ import annotations
 
@@ -27,10 +27,15 @@ BEHIND_TEXT = (0.0, 0.0, 0.0, 0.7)
 
 
 def label(cone: Cone) -> str:
-    """The angle in degrees, without trailing zeros; "auto" where unwrapping chooses it."""
+    """The angle in degrees; "auto" where unwrapping chooses it."""
     if cone.angle is None:
         return "auto"
-    degrees = math.degrees(cone.angle)
+    return in_degrees(cone.angle)
+
+
+def in_degrees(angle: float) -> str:
+    """Without trailing zeros."""
+    degrees = math.degrees(angle)
     return f"{degrees:.0f}°" if abs(degrees - round(degrees)) < 0.05 else f"{degrees:.1f}°"
 
 
