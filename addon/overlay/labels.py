@@ -71,14 +71,16 @@ def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:
     return kept
 
 
-def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: int, color: Sequence[float]) -> None:
+def draw_labels(
+    texts: Sequence[str], places: FloatArray, offsets: Sequence[float], size: int, color: Sequence[float]
+) -> None:
     """Write texts to the right of their places, the nearest first, without those that would overlap.
 
-    places: (k, 3) pixels and depths.
+    places: (k, 3) pixels and depths. offsets: how many pixels the text is away from each.
     """
     blf.size(FONT, size)
     boxes = []
-    for text, (x, y, _) in zip(texts, places.tolist(), strict=True):
+    for text, (x, y, _), offset in zip(texts, places.tolist(), offsets, strict=True):
         width, height = blf.dimensions(FONT, text)
         low, high = y - height / 2 - PADDING, y + height / 2 + PADDING
         boxes.append((x + offset, low, x + offset + width + 2 * PADDING, high))

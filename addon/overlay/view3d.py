@@ -82,10 +82,7 @@ def draw_on_top() -> None:
     objects = shown_objects(context)
     gpu.state.blend_set("ALPHA")
     for obj in objects:
-        if chosen.cones and chosen.angles:
-            _draw_angles(context, obj)
-        if chosen.up:
-            _draw_missed(context, obj)
+        _draw_labels(context, obj, chosen)
     measure = chosen.distortion.lower()
     if measure in SCALES and any(_heat_batch(cache.entry(obj), obj, measure) for obj in objects):
         _draw_scale(context, measure)
@@ -204,32 +201,22 @@ def _find_seen(context: bpy.types.Context, name: str, *, see_through: bool) -> N
         _seen[obj.data.session_uid, name] = part, shown
 
 
-def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    texts = [labels.label(cone) for cone in cache.entry(obj).content.cones]
-    _draw_texts(context, obj, "cone_places", texts, 0.5 * overlay_look().cone_size + 3)
-
-
-def _draw_missed(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    """By how much the map misses the directions drawn on the mesh."""
-    texts = [f"{labels.in_degrees(angle)} off" for angle in cache.entry(obj).content.missed_by]
-    _draw_texts(context, obj, "missed_places", texts, 3)
-
-
-def _draw_texts(
-    context: bpy.types.Context, obj: bpy.types.Object, name: str, texts: Sequence[str], offset: float
-) -> None:
-    """Write a text beside each visible one of the places.  offset: in points."""
-    pixels, seen = _seen.get((obj.data.session_uid, name), (None, None))
-    if pixels is None:
-        return
-    look, system = overlay_look(), context.preferences.system
-    labels.draw_labels(
-        [text for text, show in zip(texts, seen, strict=True) if show],
-        pixels[seen],
-        offset * system.pixel_size,
-        round(look.text_size * system.ui_scale),
-        look.text,
-    )
+def _draw_labels(context: bpy.types.Context, obj: bpy.types.Object, chosen: ConeUnwrapOverlay) -> None:
+    """The angles of visible cones, and by how much the map misses visible directions drawn on the mesh."""
+    content, look, system = cache.entry(obj).content, overlay_look(), context.preferences.system
+    wanted = []
+    if chosen.cones and chosen.angles:
+        wanted.append(("cone_places", [labels.label(cone) for cone in content.cones], 0.5 * look.cone_size + 3))
+    if chosen.up:
+        wanted.append(("missed_places", [f"{labels.in_degrees(angle)} off" for angle in content.missed_by], 3))
+    texts, offsets, places = [], [], [np.empty((0, 3), np.float32)]
+    for name, of_places, offset in wanted:
+        pixels, seen = _seen.get((obj.data.session_uid, name), (None, None))
+        if pixels is not None:
+            texts += [text for text, show in zip(of_places, seen, strict=True) if show]
+            places.append(pixels[seen])
+            offsets += [offset * system.pixel_size] * len(places[-1])
+    labels.draw_labels(texts, np.concatenate(places), offsets, round(look.text_size * system.ui_scale), look.text)
 
 
 def _draw_scale(context: bpy.types.Context, measure: str) -> None:

@@ -138,6 +138,7 @@ def test_errors_are_written_at_strokes_that_the_map_misses():
     attribute = ball.data.attributes.new(addon.core.identifiers.UP_ATTRIBUTE, "FLOAT_VECTOR", "FACE")
     attribute.data.foreach_set("vector", up.ravel())
     assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    area().spaces.active.region_3d.view_distance = 5.0
     yield from pixels()
     take_picture("missed_strokes")
     content = cache.entry(ball).content
