@@ -57,11 +57,12 @@ INFORMATION = frozenset(
         "SPECTRAL_NEEDS_CLOSED",
         "SPLIT_VERTEX",
         "TILE_SIZE_DIFFERS",
+        "UV_ACROSS_SEAMS",
     }
 )
 """Codes of warnings after which nothing needs to be done."""
 
-ONLY_LISTED = frozenset({"BORDERS_STITCHED", "FEATURES_OFF_LATTICE"})
+ONLY_LISTED = frozenset({"BORDERS_STITCHED", "FEATURES_OFF_LATTICE", "UV_ACROSS_SEAMS"})
 """Codes of warnings that are in the list of the last run alone: the one-line summary of an object covers them, or shows
 that they did no harm."""
 
@@ -201,9 +202,13 @@ def mesh_size(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
 
 def _elements(region: Region | None, finding: Any) -> MeshElements:
     elements, none = getattr(finding, "elements", None), MeshElements.none()
-    if region is None or elements is None or not len(elements.indices):
+    if elements is None or not len(elements.indices):
         return none
     indices = np.asarray(elements.indices, np.int32)
+    if elements.kind == "faces":
+        return MeshElements(none.vertices, none.edges, indices)
+    if region is None:
+        return none
     if elements.kind == "triangles":
         return MeshElements(none.vertices, none.edges, np.unique(region.triangle_faces[indices]))
     if elements.kind == "edges":

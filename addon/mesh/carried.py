@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -44,12 +45,11 @@ def carry_point_values(source: bpy.types.Mesh, target: bpy.types.Mesh, points: S
 
     Colors of corners are first averaged at each vertex. points: on the source, those of the target's vertices.
     """
-    for attribute in _carried(source, _MEANS):
-        on_corners = attribute.domain == "CORNER" and attribute.data_type in _COLORS
-        if attribute.domain == "POINT" or on_corners:
-            values = _read(attribute)
-            values = _mean_of_corners(source, values) if on_corners else values
-            _add(target, attribute, "POINT", points.mean(values))
+    for attribute in carried_attributes(source, "POINT"):
+        add_values(target, attribute, "POINT", points.mean(read_values(attribute)))
+    for attribute in carried_attributes(source, "CORNER"):
+        if attribute.data_type in _COLORS:
+            add_values(target, attribute, "POINT", points.mean(_mean_of_corners(source, read_values(attribute))))
     for name in ("active_color_name", "default_color_name"):
         if getattr(source.attributes, name) in target.attributes:
             setattr(target.attributes, name, getattr(source.attributes, name))
@@ -57,9 +57,8 @@ def carry_point_values(source: bpy.types.Mesh, target: bpy.types.Mesh, points: S
 
 def carry_face_values(source: bpy.types.Mesh, target: bpy.types.Mesh, faces: NDArray[np.int32]) -> None:
     """Store the values of faces, material and flat shading among them.  faces: that of the source below each face."""
-    for attribute in _carried(source, _MEANS | _KINDS):
-        if attribute.domain == "FACE":
-            _add(target, attribute, "FACE", _read(attribute)[faces])
+    for attribute in carried_attributes(source, "FACE"):
+        add_values(target, attribute, "FACE", read_values(attribute)[faces])
 
 
 def carry_groups(source: bpy.types.Object, target: bpy.types.Object, points: SurfacePoints, without: str) -> None:
@@ -77,21 +76,27 @@ def carry_groups(source: bpy.types.Object, target: bpy.types.Object, points: Sur
             made.add([vertex], float(carried[vertex]), "REPLACE")
 
 
-def _carried(source: bpy.types.Mesh, types: dict[str, tuple[str, type, int]]) -> list[bpy.types.Attribute]:
-    """The attributes of these types that say something of the surface.  Blender's own flags begin with a dot."""
+def carried_attributes(
+    source: bpy.types.Mesh, domain: str, without: Collection[str] = _OF_THE_MESH
+) -> list[bpy.types.Attribute]:
+    """The numbers, vectors and colors of a domain that say something of the surface, and the whole numbers and flags,
+    which have no mean, of faces and edges.  Blender's own flags begin with a dot."""
+    types = _MEANS | _KINDS if domain in {"FACE", "EDGE"} else _MEANS
     return [
         attribute
         for attribute in source.attributes
-        if attribute.data_type in types and attribute.name not in _OF_THE_MESH and not attribute.name.startswith(".")
+        if (attribute.domain == domain and attribute.data_type in types)
+        and not (attribute.name in without or attribute.name.startswith("."))
     ]
 
 
-def _read(attribute: bpy.types.Attribute) -> NDArray:
+def read_values(attribute: bpy.types.Attribute) -> NDArray:
     name, dtype, columns = (_MEANS | _KINDS)[attribute.data_type]
     return read_array(attribute.data, name, dtype, columns)
 
 
-def _add(target: bpy.types.Mesh, attribute: bpy.types.Attribute, domain: str, values: NDArray) -> None:
+def add_values(target: bpy.types.Mesh, attribute: bpy.types.Attribute, domain: str, values: NDArray) -> None:
+    """An attribute of the same name and type on a domain of another mesh."""
     name, dtype, _ = (_MEANS | _KINDS)[attribute.data_type]
     made = target.attributes.new(attribute.name, attribute.data_type, domain)
     made.data.foreach_set(name, np.ascontiguousarray(values, dtype).ravel())

@@ -11,28 +11,35 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 from numpy.typing import NDArray
 
+from ..core import native
 from ..core.cone_angles import Kind
 from ..core.region import Region
 from .angles import write_angles
 from .carried import SurfacePoints, carry_face_values, carry_groups, carry_point_values
+from .carried_edges import carry_edge_values
+from .carried_uv import carry_uv_maps
 from .cones import mark_cones
 from .stored_mesh import StoredMesh
 from .texture import material_of
 
 if TYPE_CHECKING:
     import lsgp
+    from lsgp.quads.quad_map import QuadCenters
 
 SUFFIX = " Quads"
 
 
-def add_quad_object(obj: bpy.types.Object, region: Region, quads: lsgp.QuadMesh, cone_group: str) -> bpy.types.Object:
-    """A selected object in the collections of a mesh object in object mode; the active one if that was active.
+def add_quad_object(
+    obj: bpy.types.Object, region: Region, quads: lsgp.QuadMesh, cone_group: str
+) -> tuple[bpy.types.Object, NDArray[np.int32]]:
+    """A selected object in the collections of a mesh object in object mode; the active one if that was active. And the
+    quads that lie across seams of a UV map, which are its faces.
 
     It has the transform, parent and materials of the object, no modifiers, and what can be carried over of its mesh.
     Irregular vertices are cones in the group that is named.
     """
     points = SurfacePoints(region.surface.triangles[quads.triangles], quads.weights)
-    mesh = _make_mesh(obj, region, points, quads.quads)
+    mesh, across = _make_mesh(obj, region, points, quads)
     made = obj.copy()
     made.name = mesh.name
     made.data = mesh
@@ -44,31 +51,38 @@ def add_quad_object(obj: bpy.types.Object, region: Region, quads: lsgp.QuadMesh,
         angles = quads.valences[quads.irregular] * (math.pi / 2)
         write_angles(made, quads.irregular, angles.tolist(), [Kind.FOUND] * len(angles))
     _show_beside(obj, made)
-    return made
+    return made, across
 
 
 def _make_mesh(
-    obj: bpy.types.Object, region: Region, points: SurfacePoints, quads: NDArray[np.int32]
-) -> bpy.types.Mesh:
+    obj: bpy.types.Object, region: Region, points: SurfacePoints, quads: lsgp.QuadMesh
+) -> tuple[bpy.types.Mesh, NDArray[np.int32]]:
     source = obj.data
     # In the mesh's own coordinates: those of the region are in the shape that the object's transform gives them.
-    places = StoredMesh(source).places.astype(np.float64)
-    positions = points.mean(places)
+    positions = points.mean(StoredMesh(source).places.astype(np.float64))
     mesh = bpy.data.meshes.new(obj.name + SUFFIX)
-    mesh.from_pydata(positions.tolist(), [], quads.tolist(), shade_flat=False)
+    mesh.from_pydata(positions.tolist(), [], quads.quads.tolist(), shade_flat=False)
     for slot in range(len(source.materials)):
         mesh.materials.append(source.materials[slot])
+    centers = _centers(region, quads)
     carry_point_values(source, mesh, points)
-    carry_face_values(source, mesh, _faces_below(region, places, positions[quads].mean(axis=1)))
+    carry_face_values(source, mesh, region.triangle_faces[centers.triangles])
+    carry_edge_values(source, mesh, (region.surface.positions, quads.positions))
+    across = carry_uv_maps(source, mesh, region, quads, centers)
     mesh.update()
-    return mesh
+    return mesh, across
 
 
-def _faces_below(region: Region, places: NDArray[np.float64], middles: NDArray[np.float64]) -> NDArray[np.int32]:
-    """(q,) the face of the region that each point, (q, 3), is nearest to.  places: (n, 3) of the mesh's vertices."""
-    tree = BVHTree.FromPolygons(places.tolist(), region.surface.triangles.tolist(), all_triangles=True)
-    nearest = [tree.find_nearest(middle)[2] for middle in middles.tolist()]
-    return region.triangle_faces[nearest]
+def _centers(region: Region, quads: lsgp.QuadMesh) -> QuadCenters:
+    """The points of the surface that the quads' centers are nearest to."""
+    surface = region.surface
+    whole = np.flatnonzero(~native.part("stitching").is_collapsed(surface.triangles))
+    triangles = surface.triangles[whole].tolist()
+    tree = BVHTree.FromPolygons(surface.positions.tolist(), triangles, all_triangles=True)
+    middles = quads.positions[quads.quads].mean(axis=1)
+    found = [tree.find_nearest(middle) for middle in middles.tolist()]
+    positions = np.array([hit[0] for hit in found], np.float64)
+    return native.part("quads.quad_map").QuadCenters(whole[[hit[2] for hit in found]], positions)
 
 
 def _restore_materials(obj: bpy.types.Object, made: bpy.types.Object) -> None:

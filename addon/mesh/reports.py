@@ -51,6 +51,8 @@ class Report:
     texel_density: list[float] | None = None
     overlaps_known: bool = True
     kinds: list[str] = field(default_factory=list)
+    drawn: list[int] = field(default_factory=list)
+    drawn_errors: list[float] = field(default_factory=list)
 
     def edges_of(self, kind: str) -> list[tuple[int, int]]:
         """The vertex pairs of the edges that were cut for this reason."""
@@ -62,7 +64,7 @@ class Report:
         ]
 
 
-ELEMENTS = ("cones", "flipped", "overlapping")
+ELEMENTS = ("cones", "flipped", "overlapping", "drawn")
 
 # Reports since Blender was started, by digest; undo in edit mode restores UVs, but no properties of the mesh.
 _known: OrderedDict[str, Report] = OrderedDict()
@@ -89,6 +91,9 @@ def joined(earlier: Report | None, report: Report, region: Region) -> Report:
         cone_angles=[earlier.cone_angles[i] for i in kept] + report.cone_angles,
         flipped=[face for face in earlier.flipped if not faces[face]] + report.flipped,
         overlapping=[face for face in earlier.overlapping if not faces[face]] + report.overlapping,
+        drawn=[face for face in earlier.drawn if not faces[face]] + report.drawn,
+        drawn_errors=[error for face, error in zip(earlier.drawn, earlier.drawn_errors, strict=True) if not faces[face]]
+        + report.drawn_errors,
     )
 
 
@@ -145,7 +150,7 @@ def _parsed(text: str) -> Report | None:
     """None where another version of the add-on wrote it."""
     try:
         kept = json.loads(zlib.decompress(base64.b85decode(text)))
-        elements = {name: from_runs(kept[name]) for name in ELEMENTS}
+        elements = {name: from_runs(kept[name]) for name in ELEMENTS if name in kept}
         return Report(**kept | elements | {"paths": [from_runs(path) for path in kept["paths"]]})
     except (KeyError, TypeError, ValueError, zlib.error):
         return None

@@ -39,6 +39,9 @@ ARROW, HEAD = 0.6, 0.3
 # Faces on which the axes of the texture are drawn at most, and their length relative to such a side.
 MOST_AXES, AXIS = 1000, 0.35
 
+# The least angle, in radians, by which a map is told to miss a direction; less is shown as 0.
+NOTICEABLE = math.radians(0.05)
+
 # Of the lines of the active cut, relative to others.
 ACTIVE_WIDTH = 2.0
 
@@ -62,8 +65,9 @@ class Content:
     which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
     number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
     kinds: of each path one of `cut_kinds`; empty where they are not known.
-    flipped, overlapping: (t, 3, 3) triangles. up_lines: (s, 2, 3) arrows along the drawn directions. active: the vertex
-    of the active cone, None for none. active_path: the number of the path that is drawn wider, None for none.
+    flipped, overlapping: (t, 3, 3) triangles. up_lines: (s, 2, 3) arrows along the drawn directions. missed_places:
+    (d, 3) the middles of those that the map misses noticeably, and missed_by: (d,) by how much, in radians. active: the
+    vertex of the active cone, None for none. active_path: the number of the path that is drawn wider, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -76,6 +80,8 @@ class Content:
     flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     up_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
+    missed_places: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
+    missed_by: list[float] = field(default_factory=list)
     active: int | None = None
     active_path: int | None = None
     kinds: list[str] = field(default_factory=list)
@@ -104,6 +110,8 @@ def build_content(
     vertices = [cone.vertex for cone in found]
     cone_rows, cone_uv = mesh.vertex_uv(vertices)
     lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)
+    drawn = directions_in(mesh)
+    missed = _missed(report, drawn)
     return Content(
         cones=found,
         cone_places=mesh.positions(vertices),
@@ -115,13 +123,21 @@ def build_content(
         kinds=[] if report is None else report.kinds,
         flipped=_triangles(mesh, [] if report is None else report.flipped),
         overlapping=_triangles(mesh, [] if report is None else report.overlapping),
-        up_lines=_arrows(mesh, directions_in(mesh)),
+        up_lines=_arrows(mesh, drawn),
+        missed_places=np.array([_frame(mesh, face)[0] for face in missed], np.float32).reshape(-1, 3),
+        missed_by=list(missed.values()),
     )
 
 
 def with_directions(content: Content, mesh: MeshReader, directions: Directions) -> Content:
     """What to show of a mesh while directions are drawn on it."""
-    return replace(content, up_lines=_arrows(mesh, directions))
+    nothing = Content()
+    return replace(
+        content,
+        up_lines=_arrows(mesh, directions),
+        missed_places=nothing.missed_places,
+        missed_by=nothing.missed_by,
+    )
 
 
 def session_content(obj: bpy.types.Object, session: ConeSession) -> Content:
@@ -244,6 +260,14 @@ def texture_axes(mesh: MeshReader) -> tuple[FloatArray, FloatArray]:
             axes.append([(middle, middle + way) for way in found * (AXIS * size / np.linalg.norm(found, axis=1).max())])
     u, v = np.array(axes, np.float32).reshape(-1, 2, 2, 3).swapaxes(0, 1)
     return u, v
+
+
+def _missed(report: Report | None, drawn: Directions) -> dict[int, float]:
+    """By face of those that are still drawn on."""
+    if report is None:
+        return {}
+    errors = zip(report.drawn, report.drawn_errors, strict=True)
+    return {face: error for face, error in errors if face in drawn and error > NOTICEABLE}
 
 
 def _frame(mesh: MeshReader, face: int) -> tuple[FloatArray, FloatArray, float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The angles next to cones, without overlaps, and the scale of the distortion."""
+"""The angles next to cones and directions, without overlaps, and the scale of the distortion."""
 
 from __future__ import annotations
 
@@ -27,10 +27,15 @@ BEHIND_TEXT = (0.0, 0.0, 0.0, 0.7)
 
 
 def label(cone: Cone) -> str:
-    """The angle in degrees, without trailing zeros; "auto" where unwrapping chooses it."""
+    """The angle in degrees; "auto" where unwrapping chooses it."""
     if cone.angle is None:
         return "auto"
-    degrees = math.degrees(cone.angle)
+    return in_degrees(cone.angle)
+
+
+def in_degrees(angle: float) -> str:
+    """Without trailing zeros."""
+    degrees = math.degrees(angle)
     return f"{degrees:.0f}°" if abs(degrees - round(degrees)) < 0.05 else f"{degrees:.1f}°"
 
 
@@ -66,14 +71,16 @@ def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:
     return kept
 
 
-def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: int, color: Sequence[float]) -> None:
+def draw_labels(
+    texts: Sequence[str], places: FloatArray, offsets: Sequence[float], size: int, color: Sequence[float]
+) -> None:
     """Write texts to the right of their places, the nearest first, without those that would overlap.
 
-    places: (k, 3) pixels and depths.
+    places: (k, 3) pixels and depths. offsets: how many pixels the text is away from each.
     """
     blf.size(FONT, size)
     boxes = []
-    for text, (x, y, _) in zip(texts, places.tolist(), strict=True):
+    for text, (x, y, _), offset in zip(texts, places.tolist(), offsets, strict=True):
         width, height = blf.dimensions(FONT, text)
         low, high = y - height / 2 - PADDING, y + height / 2 + PADDING
         boxes.append((x + offset, low, x + offset + width + 2 * PADDING, high))

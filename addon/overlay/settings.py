@@ -53,7 +53,8 @@ class ConeUnwrapOverlay(bpy.types.PropertyGroup):
     )
     up: bpy.props.BoolProperty(
         name="Texture Up",
-        description="Show arrows where the texture's upward direction was drawn or marked",
+        description="Show arrows where the texture's upward direction was drawn or marked, and by how much the UV map "
+        "misses it, in degrees",
         default=True,
         update=_redraw,
     )

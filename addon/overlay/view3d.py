@@ -28,9 +28,9 @@ from .settings import ConeUnwrapOverlay, settings
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
 
-# By session_uid of the mesh, for the view being drawn: (k, 3) pixels and depths of its cones in the region, and (k,)
-# which of them are visible.
-_seen: dict[int, tuple[NDArray[np.float32], NDArray[np.bool_]]] = {}
+# By session_uid of the mesh and name of the places in its content, for the view being drawn: (k, 3) their pixels and
+# depths in the region, and (k,) which of them are visible.
+_seen: dict[tuple[int, str], tuple[NDArray[np.float32], NDArray[np.bool_]]] = {}
 
 
 def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -54,8 +54,9 @@ def draw_in_scene() -> None:
     gpu.state.blend_set("ALPHA")
     try:
         _seen.clear()
-        if chosen.cones:
-            _find_seen(context, see_through=see_through)
+        for name, is_chosen in (("cone_places", chosen.cones), ("missed_places", chosen.up)):
+            if is_chosen:
+                _find_seen(context, name, see_through=see_through)
         for draw, share in (
             (_draw_faces, FACES_NEARER),
             (_draw_cuts, 1.0),
@@ -80,9 +81,8 @@ def draw_on_top() -> None:
         return
     objects = shown_objects(context)
     gpu.state.blend_set("ALPHA")
-    if chosen.cones and chosen.angles:
-        for obj in objects:
-            _draw_angles(context, obj)
+    for obj in objects:
+        _draw_labels(context, obj, chosen)
     measure = chosen.distortion.lower()
     if measure in SCALES and any(_heat_batch(cache.entry(obj), obj, measure) for obj in objects):
         _draw_scale(context, measure)
@@ -144,7 +144,7 @@ def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayL
     """Discs are drawn entirely or not at all; a depth test would let inclined surfaces cut through them."""
     entry = cache.entry(obj)
     content, pixel = entry.content, bpy.context.preferences.system.pixel_size
-    _, seen = _seen.get(obj.data.session_uid, (None, None))
+    _, seen = _seen.get((obj.data.session_uid, "cone_places"), (None, None))
     if not chosen.cones or seen is None:
         return
     tints = entry.batch("tints", partial(colors.of_cones, content.cones, look))
@@ -186,32 +186,37 @@ def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.
     return entry.batch(measure, build)
 
 
-def _find_seen(context: bpy.types.Context, *, see_through: bool) -> None:
-    """Find where the cones of each mesh are in the region, and which of them are visible."""
+def _find_seen(context: bpy.types.Context, name: str, *, see_through: bool) -> None:
+    """Find where these places of each mesh are in the region, and which of them are visible."""
     region, view = context.region, context.region_data
-    found = [(obj, cache.entry(obj).content) for obj in shown_objects(context)]
-    found = [(obj, content.cone_places) for obj, content in found if content.cones]
+    found = [(obj, getattr(cache.entry(obj).content, name)) for obj in shown_objects(context)]
     matrix = _nearer(view, 1.0) @ view.view_matrix
     for obj, places in found:
+        if not len(places):
+            continue
         part = Screen(np.array(matrix @ obj.matrix_world, np.float64), region.width, region.height).pixels(places)
         shown = np.isfinite(part).all(axis=1)
         if not see_through:
             shown &= part[:, 2] <= labels.depths(part, region.width, region.height)
-        _seen[obj.data.session_uid] = part, shown
+        _seen[obj.data.session_uid, name] = part, shown
 
 
-def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    pixels, seen = _seen.get(obj.data.session_uid, (None, None))
-    if pixels is None:
-        return
+def _draw_labels(context: bpy.types.Context, obj: bpy.types.Object, chosen: ConeUnwrapOverlay) -> None:
+    """The angles of visible cones, and by how much the map misses visible directions drawn on the mesh."""
     content, look, system = cache.entry(obj).content, overlay_look(), context.preferences.system
-    labels.draw_labels(
-        [labels.label(cone) for cone, show in zip(content.cones, seen, strict=True) if show],
-        pixels[seen],
-        (0.5 * look.cone_size + 3) * system.pixel_size,
-        round(look.text_size * system.ui_scale),
-        look.text,
-    )
+    wanted = []
+    if chosen.cones and chosen.angles:
+        wanted.append(("cone_places", [labels.label(cone) for cone in content.cones], 0.5 * look.cone_size + 3))
+    if chosen.up:
+        wanted.append(("missed_places", [f"{labels.in_degrees(angle)} off" for angle in content.missed_by], 3))
+    texts, offsets, places = [], [], [np.empty((0, 3), np.float32)]
+    for name, of_places, offset in wanted:
+        pixels, seen = _seen.get((obj.data.session_uid, name), (None, None))
+        if pixels is not None:
+            texts += [text for text, show in zip(of_places, seen, strict=True) if show]
+            places.append(pixels[seen])
+            offsets += [offset * system.pixel_size] * len(places[-1])
+    labels.draw_labels(texts, np.concatenate(places), offsets, round(look.text_size * system.ui_scale), look.text)
 
 
 def _draw_scale(context: bpy.types.Context, measure: str) -> None:

@@ -27,7 +27,7 @@ ROUNDING = 1e-9
 def quality_rows(report: Report) -> list[Row]:
     """The figures of a map, each with its ideal value."""
     figures, seams = report.distortion, report.seams
-    return [
+    rows = [
         ("Angles", f"{figures['quasi_conformal']:.3f}", "1"),
         ("Areas", f"{figures['area']:.3f}", "1"),
         ("Areas, 10 %", f"{figures['area_p10']:.3f}", "1"),
@@ -39,6 +39,9 @@ def quality_rows(report: Report) -> list[Row]:
         ("Flipped Faces", str(len(report.flipped)), "0"),
         ("Overlapping Faces", str(len(report.overlapping)) if report.overlaps_known else "?", "0"),
     ]
+    if report.drawn:
+        rows.append(("Texture Up, Largest Error", f"{math.degrees(max(report.drawn_errors)):.2f}°", "0"))
+    return rows
 
 
 def texel_rows(report: Report, scene: bpy.types.Scene, size: tuple[int, int]) -> list[Row]:

@@ -118,7 +118,8 @@ def _seamless_arguments(seamless: lsgp.Seamless) -> list[str]:
         arguments += ["--tiles", repr(seamless.tiles)]
     elif seamless.tile_size is not None:
         arguments += ["--tile-size", repr(seamless.tile_size)]
-    return arguments + (["--parity"] if seamless.parity else [])
+    flags = ("parity", "whole_features")
+    return arguments + [f"--{flag.replace('_', '-')}" for flag in flags if getattr(seamless, flag)]
 
 
 def _run(folder: Path, arguments: list[str], *, separate: bool) -> tuple[int, str]:

@@ -4,7 +4,8 @@
     PYTHONPATH=tests python tools/benchmark/straight_features.py [--preset tile] [FOLDER]
 
 Features are all edges at which the surface bends by 40 degrees or more. Their sides are measured anew from the
-coordinates as float32 stores them: one is along u or v if the other coordinate of its ends is the same number. L2
+coordinates as float32 stores them: one is along u or v if the other coordinate of its ends is the same number, and with
+"tile" it is at whole tiles if that number is whole, without and with `Seamless.whole_features`. L2
 stretch is that of the same preset without features and straight sides, and with features. FOLDER holds OBJ or OFF
 files (default: ../shared/meshes and its folder hard); those that are missing are left out. Needs the lsgp wheel and the
 tests' scipy.
@@ -27,6 +28,7 @@ from zoo import closed, swept
 ANGLE = np.radians(40)
 REASONS = ("curved", "contradiction", "stretch", "lattice")
 COLUMNS = ("cones", "along u or v", "off it", *REASONS, "L2 without", "with", "flips", "seconds")
+OF_TILES = ("at whole tiles", "if asked for", "tiles", "if asked for", "L2, if asked for")
 
 MESHES = GENERATED | {
     "turned spool": closed.lathe(
@@ -50,6 +52,13 @@ def sides_of(surface: lsgp.Surface, result: lsgp.Result) -> tuple[NDArray[np.flo
     return uv[is_side], np.linalg.norm(np.diff(surface.positions[ends[is_side]], axis=1)[:, 0], axis=1) / 2
 
 
+def share_at_whole_tiles(surface: lsgp.Surface, result: lsgp.Result) -> float:
+    """Of the length of both sides of the features."""
+    uv, length = sides_of(surface, result)
+    is_whole = ((uv[:, 0] == uv[:, 1]) & (uv[:, 0] == np.round(uv[:, 0]))).any(axis=1)
+    return length[is_whole].sum() / length.sum()
+
+
 def cells(surface: lsgp.Surface, preset: str) -> Iterator[str]:
     marked = replace(surface, features=lsgp.feature_edges(surface, angle=ANGLE))
     began = time.process_time()
@@ -71,6 +80,14 @@ def cells(surface: lsgp.Surface, preset: str) -> Iterator[str]:
     yield f"{result.distortion.l2_stretch:.4f}"
     yield str(len(result.flipped) + len(result.wrong_angle_sums))
     yield f"{seconds:.1f}"
+    if preset != "tile":
+        return
+    options = lsgp.preset_options(preset)
+    options = replace(options, seamless=replace(options.seamless, whole_features=True))
+    whole = lsgp.auto_unwrap(marked, preset=preset, options=options)
+    yield from (f"{share_at_whole_tiles(marked, found):.3f}" for found in (result, whole))
+    yield from (f"{found.seamless.tiles:.4g}" for found in (result, whole))
+    yield f"{whole.distortion.l2_stretch:.4f}"
 
 
 def main() -> None:
@@ -78,8 +95,9 @@ def main() -> None:
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, default=SHARED)
     parser.add_argument("--preset", choices=["paint", "tile", "bake"], default="tile")
     arguments = parser.parse_args()
-    print(f"| | {' | '.join(COLUMNS)} |")
-    print("|---|" + "--:|" * len(COLUMNS))
+    columns = COLUMNS + (OF_TILES if arguments.preset == "tile" else ())
+    print(f"| | {' | '.join(columns)} |")
+    print("|---|" + "--:|" * len(columns))
     for name, surface in models(arguments.folder, MESHES):
         print(f"| {name} | {' | '.join(cells(surface, arguments.preset))} |", flush=True)
 

@@ -157,6 +157,7 @@ def report_on(unwrapped: Unwrapped) -> reports.Report:
     certificate = None
     if result.seamless is not None:
         certificate = native.lsgp.certificate.certificate(result.seamless, TEXTURE_SIZE)
+    drawn, drawn_errors = _drawn_errors(unwrapped)
     return reports.Report(
         paths=[path.tolist() for path in result.cut_paths],
         kinds=list(result.cut_kinds),
@@ -170,4 +171,19 @@ def report_on(unwrapped: Unwrapped) -> reports.Report:
         seams=asdict(result.seams),
         overlap_area=result.overlap_area,
         certificate=certificate,
+        drawn=drawn,
+        drawn_errors=drawn_errors,
     )
+
+
+def _drawn_errors(unwrapped: Unwrapped) -> tuple[list[int], list[float]]:
+    """The faces on which a direction is drawn, and how far the map is from it, the largest of their triangles; none
+    where it follows something else."""
+    errors, region = unwrapped.result.direction_errors, unwrapped.region
+    if errors is None or not np.array_equal(region.surface.directions, region.drawn_up):
+        return [], []
+    has_error = np.isfinite(errors)
+    faces, number = np.unique(region.triangle_faces[has_error], return_inverse=True)
+    largest = np.zeros(len(faces))
+    np.maximum.at(largest, number, errors[has_error])
+    return faces.tolist(), largest.tolist()

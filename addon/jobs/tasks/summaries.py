@@ -43,9 +43,10 @@ def placement_summary(placement: lsgp.Placement, new: int) -> str:
     return f"{count}, {new} of them new, stretch {placement.mapped_l2:.3f} (1 is none)"
 
 
-def quad_summary(mesh: lsgp.QuadMesh) -> str:
+def quad_summary(mesh: lsgp.QuadMesh, across: int) -> str:
+    """across: how many of the quads lie across seams of UV maps."""
     irregular = counted(len(mesh.irregular), "irregular vertex", "irregular vertices")
-    return f"{len(mesh.quads):,} quads, {irregular}"
+    return f"{len(mesh.quads):,} quads, {irregular}" + (f", {across:,} across seams of UV maps" if across else "")
 
 
 def _seam_summary(unwrapped: Unwrapped) -> str:

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core import identifiers, native
+from ...core import findings, identifiers, native
 from ...core.choices import Choices, enum_items
 from ...core.region import Region
 from ...jobs.tasks.quads import QuadSettings, QuadTask, quad_task, remesh_all
 from ...jobs.tasks.summaries import quad_summary
+from ...mesh.carried_uv import uv_findings
 from ...mesh.quad_object import add_quad_object
 from ...mesh.region_read import Faces, Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -137,8 +138,11 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         return remesh_all(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
+        done = []
         for obj, task, remesh in solved:
-            add_quad_object(obj, task.region, remesh.mesh, self.vertex_group)
+            made, across = add_quad_object(obj, task.region, remesh.mesh, self.vertex_group)
+            findings.keep(made, None, uv_findings(across))
             obj.select_set(False)
             obj.hide_set(self.hide_original)
-        return [quad_summary(remesh.mesh) for _, _, remesh in solved]
+            done.append(quad_summary(remesh.mesh, len(across)))
+        return done

@@ -227,7 +227,7 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
-        self.draw_features(layout, "cone_auto_unwrap_features")
+        self.draw_features(layout, "cone_auto_unwrap_features", in_tiles=self.preset == "TILE")
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
         self.adopt_density(bpy.context)
@@ -302,5 +302,6 @@ class UV_OT_cone_auto_unwrap(
             threads=chosen_threads(),
         )
         if options.seamless is not None:
-            options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
+            tiles = self.tile_size_options() | {"whole_features": self.straight_whole}
+            options = replace(options, seamless=replace(options.seamless, **tiles))
         return options

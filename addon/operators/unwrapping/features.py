@@ -43,7 +43,15 @@ class FeatureProperties:
         subtype="ANGLE",
     )
 
-    def draw_features(self, layout: bpy.types.UILayout, identifier: str) -> None:
+    straight_whole: bpy.props.BoolProperty(
+        name="At Whole Tiles",
+        description="In seamless layouts, straight edges and creases along the tiles begin and end tiles, as bricks do "
+        "at the edge of a wall. Tiles may be smaller for it, and stretch a fifth higher instead of a tenth",
+        default=False,
+    )
+
+    def draw_features(self, layout: bpy.types.UILayout, identifier: str, *, in_tiles: bool) -> None:
+        """in_tiles: whether the layout is seamless."""
         body = section(layout, identifier, "Straight Edges")
         if body is None:
             return
@@ -51,6 +59,8 @@ class FeatureProperties:
             body.prop(self, name)
         if self.straight_creases:
             body.prop(self, "straight_angle")
+        if in_tiles:
+            body.prop(self, "straight_whole")
 
     def feature_kinds(self) -> "FeatureKinds | None":
         """None where none is chosen."""

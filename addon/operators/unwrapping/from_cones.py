@@ -63,7 +63,7 @@ class UV_OT_cone_unwrap(
                 body.prop(self, name)
             self.draw_vertex_group(body, context)
         if self.seamless or self.mode == "LOW_STRETCH":
-            self.draw_features(layout, "cone_unwrap_features")
+            self.draw_features(layout, "cone_unwrap_features", in_tiles=self.seamless)
         body = section(layout, "cone_unwrap_islands", "Islands")
         if body is not None:
             self.draw_placement(body)

@@ -117,7 +117,7 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         unfold=UNFOLDINGS[chosen.unfold][0],
         seams=SEAMS[chosen.seams][0],
         border=BORDERS[chosen.border][0],
-        seamless=SeamlessProperties.seamless_options(chosen),
+        seamless=SeamlessProperties.seamless_options(chosen, whole_features=chosen.straight_whole),
         mode=MODES[chosen.mode][0],
         stretch=chosen.stretch,
         repair=chosen.repair,

@@ -245,6 +245,7 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
         f"{counted(len(result.cones), 'cone')}, {counted(reports.island_count(result.island), 'island')}",
         reports.quality_table(result, run.texels, run.packed),
+        *reports.missed_strokes(result, run),
     ]
     if result.seamless is not None:
         lines.append(certificate_table(result.seamless, texture_size(args)))

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 from .. import _lsgp
 from ..api import Solver
 from ..base import arguments
-from ..base.arguments import FloatArray
+from ..base.arguments import FloatArray, IndexArray
 from ..base.counted import counted
 from ..base.equality import EqualByContent
 from ..base.progress import Progress, share_of
 from ..base.short_repr import ShortRepr
-from ..errors import Elements, Finding, InputError, SolverError
+from ..errors import Elements, Finding, InputError, LsgpError, SolverError
 from ..ledger import surface_of_triangles
 from ..options import Options, Seamless
 from ..presets.completed_cones import CompletedCones, GivenCones, complete_cones, or_none
@@ -74,9 +74,9 @@ class QuadRemesh(EqualByContent, ShortRepr):
     mesh: the quads. layout: the seamless layout whose grid was traced; its `cones` are the irregular vertices, its
         `seamless.tile_size` is the side of a quad whose row is not divided.
     warnings: findings that leave the mesh usable, including those of the placement of cones and of the layout.
-    surface: what the layout is of: the given surface, or where quads follow creases and its triangles are large, the
-        same with long edges divided. New vertices follow the given ones. The mesh and the warnings refer to the given
-        surface.
+    surface: what the layout is of: the given surface without triangles that name a vertex twice, or where quads follow
+        creases and its triangles are large, the same with long edges divided. New vertices follow the given ones. The
+        mesh and the warnings refer to the given surface.
     """
 
     mesh: QuadMesh
@@ -138,14 +138,38 @@ def remesh_to_quads(
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
-    if surface.may_collapse:
-        surface = surface_of_triangles(surface, np.flatnonzero(~is_collapsed(surface.triangles)))
-    chosen = _options(options)
+    asked = (GivenCones.of(cones, angles, count), target, size, _options(options))
+    if not (surface.may_collapse and is_collapsed(surface.triangles).any()):
+        return _remeshed(surface, *asked, progress)
+    whole = np.flatnonzero(~is_collapsed(surface.triangles)).astype(np.int32)
+    try:
+        remesh = _remeshed(surface_of_triangles(surface, whole), *asked, progress)
+    except LsgpError as error:
+        error.elements = _among_all(error.elements, whole)
+        raise
+    mesh = replace(remesh.mesh, triangles=whole[remesh.mesh.triangles])
+    warnings = [replace(finding, elements=_among_all(finding.elements, whole)) for finding in remesh.warnings]
+    return replace(remesh, mesh=mesh, warnings=warnings)
+
+
+def _among_all(elements: Elements, whole: IndexArray) -> Elements:
+    """Elements of a surface of these triangles alone, as elements of all."""
+    return Elements("triangles", whole[elements.indices]) if elements.kind == "triangles" else elements
+
+
+def _remeshed(
+    surface: Surface,
+    given: GivenCones,
+    target: int | None,
+    size: float | None,
+    chosen: Options,
+    progress: Progress | None,
+) -> QuadRemesh:
+    """Of a surface without seams whose triangles have three vertices each."""
     _lsgp.require_closed(surface_arrays(surface))
     side = _side(surface, target, size)
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
-    given = GivenCones.of(cones, angles, count)
     solver, along, finer = Solver(surface), None, None
     if given.is_free and follows_features(surface, chosen):
         along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))

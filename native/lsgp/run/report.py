@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arguments import FloatArray
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
@@ -22,6 +23,9 @@ from ..results import FeatureReport, Measurement, Placement, Result
 from .unwrap_file import Packed, Run
 
 Report = dict[str, Any]
+
+# The least error of a stroke that people are told of, in degrees, and how many strokes at most.
+_NOTICEABLE, _MOST_STROKES = 0.05, 10
 
 # Every report has all of these keys, in this order; what does not apply is null or empty.
 EMPTY: Report = {
@@ -254,9 +258,31 @@ def _direction_figures(result: Result, run: Run) -> Report | None:
     figures = {"mean": result.direction_error, "largest": float(np.nanmax(result.direction_errors))}
     if run.directed_faces is None:
         return figures
+    return figures | {"faces": run.directed_faces.tolist(), "errors": _errors_of_strokes(result, run).tolist()}
+
+
+def _errors_of_strokes(result: Result, run: Run) -> FloatArray:
+    """(k,) at each of `run.directed_faces`, the largest of its triangles, NaN where it has no map."""
     errors = np.full(len(np.bincount(run.triangulation.polygon)), np.nan)
     np.fmax.at(errors, run.triangulation.polygon, result.direction_errors)
-    return figures | {"faces": run.directed_faces.tolist(), "errors": errors[run.directed_faces].tolist()}
+    return errors[run.directed_faces]
+
+
+def missed_strokes(result: Result, run: Run) -> list[str]:
+    """A line for each of the strokes of a directions file that the map misses noticeably, the worst first; those that
+    are hardly better are only counted."""
+    if run.directed_faces is None or result.direction_errors is None:
+        return []
+    errors = np.degrees(_errors_of_strokes(result, run))
+    missed = np.flatnonzero(errors > _NOTICEABLE)
+    if not len(missed):
+        return []
+    worst = missed[np.argsort(-errors[missed], kind="stable")]
+    lines = [f"strokes that the texture misses by more than {_NOTICEABLE} degrees: {len(missed)} of {len(errors)}"]
+    lines += [f"  face {run.directed_faces[k]}: {errors[k]:.2f}" for k in worst[:_MOST_STROKES]]
+    if len(worst) > _MOST_STROKES:
+        lines.append(f"  and {len(worst) - _MOST_STROKES} more, in the report (--report)")
+    return lines
 
 
 def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:

@@ -52,6 +52,9 @@ MOST_COST = 1e6
 
 AUTO, AUTO_COUNT = "auto", "auto:"
 
+# Options that are fields of `Seamless` under the same names.
+_OF_TILES = ("tiles", "tile_size", "lattice", "parity", "whole_features", "coarse_grid")
+
 
 # What presets do unless --no-NAME is given: the presets that do it, and what the option changes.
 _PRESET_SWITCHES = {
@@ -358,6 +361,13 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
         "--parity", action="store_true", default=None, help="the black and white squares of a checker match as well"
     )
     seamless.add_argument(
+        "--whole-features",
+        action="store_true",
+        default=None,
+        help="features and creases along the tiles lie between whole tiles, which may be smaller for it, and may cost "
+        "a fifth of L2 stretch instead of a tenth",
+    )
+    seamless.add_argument(
         "--coarse-grid",
         choices=get_args(CoarseGrid),
         help="if the tiles are too large for a valid layout: take smaller tiles, merge cones less than a tile apart, "
@@ -583,7 +593,7 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
     """Raises UsageError where the options for seamless layouts do not fit.  preset: what it says of them."""
     base = Seamless() if args.seamless else preset
     if base is None:
-        for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
+        for name in (*_OF_TILES, "texture_size", "mip_levels"):
             if getattr(args, name) is None:
                 continue
             if name != "texture_size":
@@ -594,7 +604,7 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
                     "--texel-density or --seamless"
                 )
         return None
-    wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}
+    wanted = {name: getattr(args, name) for name in _OF_TILES}
     if args.texel_density is not None:
         if args.tiles is not None or args.tile_size is not None:
             raise UsageError("--texel-density says how large tiles are; leave --tiles and --tile-size out")

@@ -7,6 +7,7 @@ import bpy
 import gpu
 import numpy as np
 from installed import addon
+from mathutils import Vector
 from scenes import add_ball, add_cone_cube, edit
 from windows import area, region, take_picture
 
@@ -119,13 +120,38 @@ def test_angles_are_written_at_cones_that_nothing_hides():
     toward = np.array(area().spaces.active.region_3d.view_rotation.to_matrix().col[2])
     cones = [cone.vertex for cone in cache.entry(ball).content.cones]
     facing = np.array([np.array(ball.data.vertices[v].normal) @ toward for v in cones])
-    _, seen = view3d._seen[ball.data.session_uid]
+    _, seen = view3d._seen[ball.data.session_uid, "cone_places"]
     assert seen[facing > 0.3].all() and not seen[facing < -0.3].any()
     assert (facing > 0.3).sum() >= 2 and (facing < -0.3).sum() >= 2
     area().spaces.active.shading.show_xray = True
     yield from pixels()
-    assert view3d._seen[ball.data.session_uid][1].all()
+    assert view3d._seen[ball.data.session_uid, "cone_places"][1].all()
     area().spaces.active.shading.show_xray = False
+
+
+def test_errors_are_written_at_strokes_that_the_map_misses():
+    ball = add_ball(cuts=9)
+    up = np.zeros((len(ball.data.polygons), 3), np.float32)
+    for face in ball.data.polygons:
+        if abs(face.center.z) < 0.15 or abs(face.center.x) < 0.1:
+            up[face.index] = face.center.cross(Vector((0.3, 1, 0.2))).normalized()
+    attribute = ball.data.attributes.new(addon.core.identifiers.UP_ATTRIBUTE, "FLOAT_VECTOR", "FACE")
+    attribute.data.foreach_set("vector", up.ravel())
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    area().spaces.active.region_3d.view_distance = 5.0
+    yield from pixels()
+    take_picture("missed_strokes")
+    content = cache.entry(ball).content
+    part, seen = view3d._seen[ball.data.session_uid, "missed_places"]
+    toward = np.array(area().spaces.active.region_3d.view_rotation.to_matrix().col[2])
+    facing = content.missed_places @ toward / np.linalg.norm(content.missed_places, axis=1)
+    assert len(part) == len(content.missed_by) > 10
+    assert seen[facing > 0.5].all() and not seen[facing < -0.3].any() and (facing > 0.5).sum() > 3
+    settings = bpy.context.window_manager.cone_unwrap_overlay
+    white = count((yield from pixels()), look().text)
+    settings.up = False
+    assert count((yield from pixels()), look().text) < white
+    settings.up = True
 
 
 def test_flipped_and_overlapping_faces_are_drawn():

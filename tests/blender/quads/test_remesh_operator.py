@@ -293,9 +293,121 @@ def test_attributes_of_faces_are_those_of_the_faces_below():
     assert all(sides[face.index].value == np.abs(face.center).argmax() for face in made.data.polygons)
 
 
-def test_there_is_no_uv_layer():
-    add_cone_cube()
+def set_uv(obj, name, place_to_uv):
+    """A UV map whose value at each corner of a face is that of a function of the place and the face's center."""
+    layer = obj.data.uv_layers.get(name) or obj.data.uv_layers.new(name=name)
+    for face in obj.data.polygons:
+        for loop in face.loop_indices:
+            place = obj.data.vertices[obj.data.loops[loop].vertex_index].co
+            layer.uv[loop].vector = place_to_uv(np.array(place), np.array(face.center))
+    return layer
+
+
+def quad_corners(obj, layer):
+    """Of each quad the places, (q, 4, 3), and the UVs, (q, 4, 2), of its corners."""
+    data = obj.data
+    places = np.array([data.vertices[loop.vertex_index].co for loop in data.loops]).reshape(-1, 4, 3)
+    return places, np.array([entry.vector for entry in data.uv_layers[layer].uv]).reshape(-1, 4, 2)
+
+
+def atlas(place, middle):
+    """The sides of a cube apart from each other."""
+    axis, sign = int(np.abs(middle).argmax()), middle[np.abs(middle).argmax()] > 0
+    return np.delete(place, axis) + np.array([4 * axis, 4 * sign])
+
+
+def test_uv_maps_are_those_of_the_surface_below(reports):
+    cube = add_cone_cube()
+    while cube.data.uv_layers:
+        cube.data.uv_layers.remove(cube.data.uv_layers[0])
+    set_uv(cube, "Flat", lambda place, middle: (place[0] + place[2], place[1]))
+    set_uv(cube, "Atlas", atlas).active_render = True
+    cube.data.uv_layers.active_index = 0
+    reports()
+    made = remesh(count=600)
+    assert [layer.name for layer in made.data.uv_layers] == ["Flat", "Atlas"]
+    assert made.data.uv_layers.active.name == "Flat" and made.data.uv_layers["Atlas"].active_render
+    places, uv = quad_corners(made, "Flat")
+    np.testing.assert_allclose(uv, np.stack([places[..., 0] + places[..., 2], places[..., 1]], axis=2), atol=1e-6)
+    # Rows of quads lie along the seams, so that every quad is on one side.
+    places, uv = quad_corners(made, "Atlas")
+    expected = [[atlas(place, quad.mean(axis=0)) for place in quad] for quad in places]
+    np.testing.assert_allclose(uv, expected, atol=1e-6)
+    assert "seams" not in reports()
+
+
+def test_quads_across_seams_are_continued_from_their_centers_and_counted(reports):
+    cube = add_cone_cube(cuts=4)
+    set_uv(cube, "UVMap", lambda place, middle: place[:2] + np.array([7 * (middle[0] > 0.2), 0]))
+    reports()
+    made = remesh(count=294)
+    places, uv = quad_corners(made, "UVMap")
+    middles = places.mean(axis=1)
+    upright = np.abs(middles[:, 2]) > 0.99
+    moved = 7 * (middles[:, 0] > 0.2)[:, None, None] * np.array([1, 0])
+    np.testing.assert_allclose(uv[upright], (places[..., :2] + moved)[upright], atol=1e-5)
+    is_across = (places[..., 0] < 0.199).any(axis=1) & (places[..., 0] > 0.201).any(axis=1)
+    assert is_across.sum() == 4 * 7 and "28 across seams of UV maps" in reports()
+    edit(made, select="DESELECT")
+    assert bpy.ops.mesh.cone_select_reported() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert [face.select for face in made.data.polygons] == is_across.tolist()
+
+
+def test_a_mesh_without_uv_maps_gets_none():
+    cube = add_cone_cube()
+    while cube.data.uv_layers:
+        cube.data.uv_layers.remove(cube.data.uv_layers[0])
     assert not remesh(count=96).data.uv_layers
+
+
+def edges_where(obj, values):
+    """The middles of the edges with a value, as a set of rounded places."""
+    ends = np.array([[obj.data.vertices[v].co for v in edge.vertices] for edge in obj.data.edges])
+    return {tuple(np.round(middle, 3) + 0.0) for middle in ends.mean(axis=1)[np.array(values, bool)]}
+
+
+def test_marks_of_edges_are_on_the_edges_along_them():
+    cube = add_cone_cube()
+    ends = np.array([[cube.data.vertices[v].co for v in edge.vertices] for edge in cube.data.edges])
+    on_top = (ends[..., 2] > 0.99).all(axis=1)
+    at_right = on_top & (ends[..., 0] > 0.99).all(axis=1)
+    at_front = on_top & (ends[..., 1] < -0.99).all(axis=1)
+    cube.data.edges.foreach_set("use_seam", at_right)
+    cube.data.edges.foreach_set("use_edge_sharp", at_front)
+    cube.data.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", 0.75 * at_right)
+    cube.data.attributes.new(identifiers.FEATURE_ATTRIBUTE, "BOOLEAN", "EDGE").data.foreach_set("value", at_right)
+    made = remesh(count=600)
+    steps = {tuple(np.round([1, y, 1], 3)) for y in np.arange(-0.9, 1, 0.2)}
+    assert edges_where(made, [edge.use_seam for edge in made.data.edges]) == steps
+    assert edges_where(made, [edge.use_edge_sharp for edge in made.data.edges]) == {(y, -x, z) for x, y, z in steps}
+    creases = [entry.value for entry in made.data.attributes["crease_edge"].data]
+    assert edges_where(made, creases) == steps and set(creases) == {0, 0.75}
+    features = made.data.attributes[identifiers.FEATURE_ATTRIBUTE].data
+    assert edges_where(made, [entry.value for entry in features]) == steps
+
+
+def test_seams_between_rows_of_quads_are_left_out():
+    cube = add_cone_cube()
+    ends = np.array([[cube.data.vertices[v].co for v in edge.vertices] for edge in cube.data.edges])
+    cube.data.edges.foreach_set("use_seam", (ends[..., 0] == 0.5).all(axis=1))
+    made = remesh(count=600)
+    assert not any(edge.use_seam for edge in made.data.edges)
+
+
+def test_marks_are_not_carried_through_thin_parts():
+    grid = add_grid()
+    mesh = grid.data
+    size = mesh.vertices[0].co.length
+    bpy.ops.object.modifier_add(type="SOLIDIFY")
+    grid.modifiers[0].thickness = 1e-4 * size
+    bpy.ops.object.modifier_apply(modifier="Solidify")
+    is_above = [all(mesh.vertices[v].normal.z > 0.99 for v in edge.vertices) for edge in mesh.edges]
+    mesh.edges.foreach_set("use_seam", is_above)
+    other, places = mesh.copy(), np.array([vertex.co for vertex in mesh.vertices])
+    addon.mesh.carried_edges.carry_edge_values(mesh, other, (places, places))
+    assert 0 < sum(is_above) < len(is_above)
+    assert [edge.use_seam for edge in other.edges] == is_above
 
 
 # --- refusals -------------------------------------------------------------------------------------------------------

@@ -222,6 +222,46 @@ def test_clearing_cone_data_removes_directions(in_edit_mode):
     assert stored(grid) is None
 
 
+def drawn_around(obj):
+    """Directions on all faces, in circles, which no island of a closed mesh can meet; as they are stored."""
+    up = np.array([np.cross(face.center, [0.2, 0.1, 1.0]) for face in obj.data.polygons], np.float32)
+    up /= np.linalg.norm(up, axis=1, keepdims=True)
+    obj.data.attributes.new(UP, "FLOAT_VECTOR", "FACE").data.foreach_set("vector", up.ravel())
+    return up
+
+
+@pytest.mark.parametrize("seamless", [False, True])
+def test_what_the_map_misses_is_told_at_each_face(seamless):
+    ball = add_ball()
+    up = drawn_around(ball)
+    assert bpy.ops.uv.cone_unwrap(seamless=seamless) == {"FINISHED"}
+    shown = content.build_content(ball, addon.mesh.reports.find(ball.data))
+    report = addon.mesh.reports.find(ball.data)
+    assert report.drawn == list(range(len(up)))
+    order = 4 if seamless else 1
+    expected = [off(way_of(ball, direction.astype(float))[[face]], order) for face, direction in enumerate(up)]
+    # Faces are not flat, so that their triangles differ.
+    assert np.abs(np.array(report.drawn_errors) - expected).mean() < np.radians(5)
+    missed = [face for face, error in enumerate(report.drawn_errors) if error > np.radians(0.05)]
+    assert shown.missed_by == [report.drawn_errors[face] for face in missed] and len(missed) > 50
+    np.testing.assert_allclose(shown.missed_places, [ball.data.polygons[f].center for f in missed], atol=0.05)
+    rows = {label: value for label, value, _ in addon.ui.tables.quality_rows(report)}
+    assert rows["Texture Up, Largest Error"] == f"{np.degrees(max(report.drawn_errors)):.2f}°"
+
+
+def test_nothing_is_told_of_strokes_that_are_met_or_were_not_followed():
+    grid = add_grid()
+    edit(grid)
+    keep(draw([grid], ((-0.5, -0.5), (-0.3, 0.4))))
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    report = addon.mesh.reports.find(grid.data)
+    assert report.drawn and content.build_content(grid, report).missed_by == []
+    ball = add_ball()
+    drawn_around(ball)
+    assert bpy.ops.uv.cone_unwrap(direction="Z") == {"FINISHED"}
+    assert addon.mesh.reports.find(ball.data).drawn == []
+
+
 def test_arrows_lie_on_their_faces_and_axes_show_the_map():
     grid = add_grid()
     edit(grid)

@@ -6,7 +6,7 @@ import math
 import bpy
 import numpy as np
 import pytest
-from scenes import UvMap, add_cube, add_tube, edges_where, edit
+from scenes import UvMap, add_cube, add_tube, edges_where, edit, mark
 
 SIZES = np.array([1.0, 1.37, 2.11])
 
@@ -37,6 +37,18 @@ def off_axis(obj: bpy.types.Object, edges: set[tuple[int, int]]) -> float:
     return worst
 
 
+def off_tiles(obj: bpy.types.Object, edges: set[tuple[int, int]]) -> float:
+    """The most that one of these edges is off the nearest line between whole tiles, on any of its sides."""
+    uv, mesh, worst = UvMap(obj).uv, obj.data, 0.0
+    for face in mesh.polygons:
+        loops = list(face.loop_indices)
+        for a, b in zip(loops, loops[1:] + loops[:1], strict=True):
+            if tuple(sorted((mesh.loops[a].vertex_index, mesh.loops[b].vertex_index))) in edges:
+                along = int(np.abs(uv[a] - uv[b]).argmin())
+                worst = max(worst, float(np.abs(uv[a] - np.round(uv[a]))[along]))
+    return worst
+
+
 def mark_attribute(obj: bpy.types.Object, edges: set[tuple[int, int]]) -> None:
     attribute = obj.data.attributes.new("uv_cone_feature", "BOOLEAN", "EDGE")
     attribute.data.foreach_set("value", [tuple(sorted(edge.vertices)) in edges for edge in obj.data.edges])
@@ -55,6 +67,22 @@ def test_edges_with_the_attribute_are_straight(preset: str, in_edit_mode: bool) 
     # Blender's packer moves and scales islands in single precision.
     rounding = 0 if preset == "TILE" else np.spacing(np.float32(1))
     assert off_axis(box, loop) <= rounding
+
+
+@pytest.mark.parametrize("is_whole", [False, True])
+def test_they_are_at_whole_tiles_where_that_is_chosen(is_whole: bool) -> None:
+    box = add_box()
+    loop = edges_where(box, lambda place: abs(place[2] + SIZES[2] / 2) < 1e-6)
+    mark_attribute(box, loop)
+    options = {"preset": "TILE", "straighten": False, "straight_whole": is_whole}
+    assert bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
+    assert off_axis(box, loop) == 0
+    assert (off_tiles(box, loop) == 0) == is_whole
+    if is_whole:
+        places = np.array([vertex.co for vertex in box.data.vertices])
+        mark(box, np.flatnonzero((np.abs(np.abs(places) / SIZES - 1) < 1e-6).all(axis=1)).tolist())
+        assert bpy.ops.uv.cone_unwrap(seamless=True, straight_whole=True) == {"FINISHED"}
+        assert off_tiles(box, loop) == 0
 
 
 def test_without_marks_they_are_not() -> None:

@@ -44,8 +44,12 @@ def test_faces_of_a_directions_file_are_told_one_by_one(lsgp, cube_files: Path) 
         written = abs(np.angle(image_of(cube_files / "out.obj", face, direction) / 1j))
         assert error == pytest.approx(written, abs=1e-6)
     assert told["largest"] == max(told["errors"])
+    worst, other = np.argsort(told["errors"])[::-1]
+    lines = [f"  face {told['faces'][k]}: {np.degrees(told['errors'][k]):.2f}\n" for k in (worst, other)]
+    assert f"misses by more than 0.05 degrees: 2 of 2\n{''.join(lines)}" in done.out
     (cube_files / "strokes.json").write_text(json.dumps(strokes[:1]))
-    assert lsgp(*UNWRAP, "--directions", "strokes.json").report()["direction_error"]["largest"] <= 1e-9
+    done = lsgp(*UNWRAP, "--directions", "strokes.json")
+    assert done.report()["direction_error"]["largest"] <= 1e-9 and "strokes" not in done.out.replace("strokes.json", "")
 
 
 def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Path) -> None:

@@ -43,13 +43,32 @@ def test_edges_of_a_file(lsgp, cube_files: Path) -> None:
     (cube_files / "loop.json").write_text(json.dumps(edges))
     assert share(lsgp) is None
     assert share(lsgp, "--features", "loop.json") == 1
-    mesh = read_mesh(cube_files / "out.obj", with_uv=True)
-    wanted = set(map(tuple, edges))
+    assert len(lines_of(cube_files / "out.obj", edges)) == 2 * len(edges)
+
+
+def lines_of(path: Path, edges: list[list[int]]) -> list[float]:
+    """The coordinate of both sides of edges that is the same along them."""
+    mesh = read_mesh(path, with_uv=True)
+    wanted, found = set(map(tuple, edges)), []
     for start, face in zip(mesh.starts.tolist(), faces_of(mesh), strict=True):
         for i, a in enumerate(face):
             j = (i + 1) % len(face)
             if tuple(sorted((a, face[j]))) in wanted:
-                assert (np.float32(mesh.corner_uv[start + i]) == np.float32(mesh.corner_uv[start + j])).any()
+                one, other = (np.float32(mesh.corner_uv[start + k]) for k in (i, j))
+                assert (one == other).any()
+                found.append(float(one[one == other][0]))
+    return found
+
+
+def test_features_at_whole_tiles(lsgp, cube_files: Path) -> None:
+    edges = around(cube_files)
+    (cube_files / "loop.json").write_text(json.dumps(edges))
+    off = {}
+    for options in ((), ("--whole-features",)):
+        assert share(lsgp, "--features", "loop.json", "--no-straighten", *options) == 1
+        lines = np.array(lines_of(cube_files / "out.obj", edges))
+        off[options] = np.abs(lines - np.round(lines)).max()
+    assert off[("--whole-features",)] == 0 < off[()]
 
 
 def test_kinds_of_edges(lsgp, cube_files: Path) -> None:

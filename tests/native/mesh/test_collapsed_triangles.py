@@ -76,8 +76,14 @@ def test_every_verb_takes_collapsed_triangles() -> None:
 
 def test_quads_cover_a_ball_with_poles_of_many_vertices() -> None:
     surface = closed(ball_with_many_at_poles())
-    quads = lsgp.remesh_to_quads(surface, target=200).mesh.quads
+    mesh = lsgp.remesh_to_quads(surface, target=200).mesh
+    quads = mesh.quads
     assert meshes.euler_characteristic(np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])) == 2
+    # Its places are on the given surface, whose triangles have other numbers than those with an area.
+    first = np.flatnonzero(is_collapsed(surface.triangles)).min()
+    assert mesh.triangles.max() > first
+    places = np.einsum("vc,vcx->vx", mesh.weights, surface.positions[surface.triangles[mesh.triangles]])
+    np.testing.assert_allclose(places, mesh.positions, atol=1e-12)
 
 
 def test_a_vertex_named_twice_is_refused_unless_it_may_be() -> None:
