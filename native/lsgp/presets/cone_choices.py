@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cones among which the map decides: usual ones, symmetric ones, and those with which creases run along a lattice."""
+"""Cones among which the map decides: usual ones, symmetric ones, and those for features that run along u and v."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from .map_comparison import (
     has_direction,
     may_replace_for_features,
     may_replace_map,
+    may_replace_straighter,
     mirrored_cuts_cost_islands,
     releases_features,
     runs_along_features,
@@ -50,7 +51,8 @@ class ConeChoices:
     """Cones among which `best_map` chooses, each as of `complete_cones`.
 
     usual: symmetric ones if all components are symmetric. symmetric: those that differ from the usual ones, or have
-    other cuts; None without. for_features: those with which creases can run along the lattice; None without.
+    other cuts; None without. for_features: those with which creases can run along the lattice, or marked features along
+    u and v; None without.
     """
 
     usual: CompletedCones
@@ -65,7 +67,8 @@ def possible_cones(
 
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
-    if not (given.is_free and follows_features(solver.surface, options)):
+    follows = follows_features(solver.surface, options) or straightens_marked(solver.surface, options)
+    if not (given.is_free and follows):
         return _symmetric_cones(solver, given, options, symmetric, progress)
     found = _symmetric_cones(solver, given, options, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES))
     for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0), given.target)
@@ -79,16 +82,25 @@ def follows_features(surface: Surface, options: Options) -> bool:
     return is_square and has_features and options.prescription is None and not len(surface.seams)
 
 
+def straightens_marked(surface: Surface, options: Options) -> bool:
+    """Whether marked features are to run along u and v of a map that is not seamless."""
+    is_low_stretch = options.seamless is None and options.mode == "low-stretch"
+    has_features = len(surface.features) > 0 and not len(surface.seams)
+    return is_low_stretch and has_features and options.prescription is None and options.border == "free"
+
+
 def feature_cones(
     solver: Solver, options: Options, progress: Progress | None = None, target: float = TARGET
 ) -> CompletedCones | None:
-    """Cones with which marked features and, with `Options.straighten`, creases of hard surfaces can run along the
-    lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones.
+    """Cones with which marked features and, in seamless layouts with `Options.straighten`, creases of hard surfaces can
+    run along u and v, and those of `complete_cones` on other components; None without features, or if there are no such
+    cones.
 
     target: for the others, as of `place_cones`.
     """
     arrays = surface_arrays(solver.surface)
-    chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, _TRYING)))
+    has_creases = options.straighten and options.seamless is not None
+    chosen = or_none(lambda: _lsgp.feature_cones(arrays, has_creases, share_of(progress, 0.0, _TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
     given = GivenCones.of(*chosen, target=target)
@@ -132,6 +144,10 @@ def best_map(
     """
     symmetric, for_features = choices.symmetric, choices.for_features
     maps = _Maps(solver, pins)
+    if for_features is not None and options.seamless is None:
+        usual = best_map(solver, replace(choices, for_features=None), options, pins, progress)
+        # The other map has no time of its own.
+        return _straighter(maps, for_features, usual, options, share_of(progress, 1.0, 1.0))
     share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
     stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
@@ -259,6 +275,18 @@ def _best_along(
             candidates.insert(0, joint)
     better = [candidate for candidate in candidates if may_replace_for_features(candidate[1], best[1])]
     return max([*better, best], key=lambda candidate: worth_along_features(candidate[1]))
+
+
+def _straighter(
+    maps: _Maps, for_features: CompletedCones, usual: MapThrough, options: Options, progress: Progress | None
+) -> MapThrough:
+    """The usual map, or where it releases marked features the one through cones for them, if that is worth it."""
+    if not releases_features(usual[1]):
+        return usual
+    along = maps.attempt(for_features, options, progress)
+    if along is None or not may_replace_straighter(along[1], usual[1]):
+        return usual
+    return along[0], along[0].told(along[1], options)
 
 
 def _without_creases(maps: _Maps, along: MapThrough, options: Options, progress: Progress | None) -> MapThrough:

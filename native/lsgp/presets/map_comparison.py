@@ -192,6 +192,20 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     )
 
 
+def may_replace_straighter(straighter: Result, usual: Result) -> bool:
+    """Whether a map that is not seamless has more of its marked features along u and v and is worth more for that, at
+    up to a tenth more of L2 stretch and without further islands or defects."""
+    gain = feature_share(straighter) - feature_share(usual)
+    cost = straighter.distortion.l2_stretch - usual.distortion.l2_stretch
+    return (
+        straighter.solved.tolist() == usual.solved.tolist()
+        and defects(straighter) <= defects(usual)
+        and island_count(straighter) <= island_count(usual)
+        and straighter.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
+        and gain > max(0.0, _FEATURES_FOR_STRETCH * cost)
+    )
+
+
 def has_direction(share: FloatArray | float) -> NDArray[np.bool_] | bool:
     """Whether most creases run along the lattice, with this share of them."""
     return share >= _FEATURES_IN_COMMON
