@@ -12,6 +12,8 @@ import pytest
 from map_checks import assert_angles_met, assert_exact_transitions, codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray
+from result_check import undeclared_faults
+from shared_meshes import shared_mesh
 from zoo import closed
 
 PAINT = lsgp.preset_options("paint")
@@ -81,6 +83,35 @@ def test_a_loop_around_a_closed_surface_with_cones_is_straight() -> None:
     assert along.distortion.l2_stretch <= MOST_L2 * plain.distortion.l2_stretch
     assert_exact_transitions(mesh, along)
     assert_angles_met(mesh, along)
+
+
+@pytest.mark.parametrize("size, sway", [((1, 1, 1), 0.4), ((0.8, 1.5, 1.2), 0.3), ((1.4, 0.6, 1.8), 0.5)])
+def test_cones_are_such_that_marked_edges_can_be_straight(size: tuple[float, float, float], sway: float) -> None:
+    """Around cones of other angles than whole quarter turns, creases cannot all run along u and v."""
+    mesh = closed.beveled_box(4, 0.15, size)
+    bent = mesh.positions.copy()
+    bent[:, 0] += sway * np.sin(1.5 * bent[:, 2])
+    mesh = mesh._replace(positions=bent)
+    marked = replace(surface(mesh), features=lsgp.feature_edges(surface(mesh), angle=0.6))
+    plain, along = (lsgp.auto_unwrap(each, preset="paint", creases=False) for each in (surface(mesh), marked))
+    quarters = along.cone_angles / (np.pi / 2)
+    assert (np.abs(plain.cone_angles / (np.pi / 2) - np.round(plain.cone_angles / (np.pi / 2))) > 1e-3).any()
+    np.testing.assert_allclose(quarters, np.round(quarters), atol=1e-9)
+    assert along.features.share > 0.9
+    assert along.distortion.l2_stretch <= MOST_L2 * plain.distortion.l2_stretch
+    assert undeclared_faults(marked, along, PAINT) == []
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_features_stay_straight_when_islands_are_split(preset: lsgp.Preset) -> None:
+    """The creases of the fandisk are straight in a map that overlaps, and in its islands as well."""
+    mesh = shared_mesh("fandisk")
+    marked = replace(surface(mesh), features=lsgp.feature_edges(surface(mesh), angle=np.radians(40)))
+    result = lsgp.auto_unwrap(marked, preset=preset)
+    assert not len(result.overlapping) and not len(result.flipped)
+    assert result.features.share > 0.95
+    assert undeclared_faults(replace(marked, borders=result.borders), result, lsgp.preset_options(preset)) == []
+    assert result.distortion.l2_stretch < MOST_L2
 
 
 def test_what_the_other_options_do_with_marked_edges() -> None:

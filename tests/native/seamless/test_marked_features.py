@@ -128,12 +128,25 @@ def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: f
     mesh = closed.toothed_wheel(teeth, depth)
     edges = lsgp.feature_edges(surface(mesh), angle=0.7)
     wheel = marked(mesh, edges)
-    result = lsgp.auto_unwrap(wheel, preset="tile", options=PLAIN)
+    result = lsgp.auto_unwrap(wheel, preset="tile", options=PLAIN, creases=False)
     lengths = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
     is_straight = [is_along_axis(ends(mesh, result, edge[None])).all() for edge in edges]
     assert lengths[is_straight].sum() / lengths.sum() == pytest.approx(result.features.share, abs=1e-9)
     assert result.features.share > 0.9
     assert undeclared_faults(wheel, result, PLAIN) == []
+
+
+@pytest.mark.parametrize("teeth, depth", [(7, 0.4), *many_solves((9, 0.3))])
+def test_parts_end_at_creases_where_marked_features_gain_by_that(teeth: int, depth: float) -> None:
+    mesh = closed.toothed_wheel(teeth, depth)
+    edges = lsgp.feature_edges(surface(mesh), angle=0.7)
+    wheel = marked(mesh, edges)
+    joined, ended = (lsgp.auto_unwrap(wheel, preset="tile", creases=creases) for creases in (False, True))
+    assert not len(joined.borders) and len(ended.borders)
+    assert is_along_axis(ends(mesh, ended, edges)).all() and ended.features.share == 1
+    assert ended.seamless.tile_size > 2 * joined.seamless.tile_size
+    assert ended.distortion.l2_stretch < joined.distortion.l2_stretch
+    assert undeclared_faults(replace(wheel, borders=ended.borders), ended, TILE) == []
 
 
 def test_released_features_are_named_with_their_shares() -> None:
