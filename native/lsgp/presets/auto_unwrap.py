@@ -109,9 +109,9 @@ def auto_unwrap(
         tenths less, where it exceeds 0.002; an island for two cones fewer is no further one, unless the component is
         small. Or where less than three fifths of the square are filled, and at no cost of stretch a tenth more with
         them, a quarter for one further island, or two fifths for two (or a tenth; with "bake" any number). The latter
-        two only without cones, `count` or pins. In seamless layouts on squares, without marked cones, seams and
-        features: those of hard components of which less than three quarters could run along the lattice otherwise, or
-        at an L2 stretch above 1.1, if that is worth it; all other cuts stay invisible.
+        two only without cones, `count` or pins. In seamless layouts on squares, without marked cones and seams: those
+        of hard components of which less than three quarters (of marked features, if there are any) could run along the
+        lattice otherwise, or at an L2 stretch above 1.1, if that is worth it; all other cuts stay invisible.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -211,7 +211,7 @@ def crease_choices(
     "bake" requires all; "paint" those of components with curvature at more than 24 vertices, since fewer can be cones,
     across which the texture continues. Both may gain by those of other components with half of their curvature on
     creases, unless the number of cones is given. Seamless layouts on squares, as with "tile", may gain by those of hard
-    components where no cones, seams or features are marked. With straight borders or prescribed turning: none.
+    components where no cones or seams are marked. With straight borders or prescribed turning: none.
     sharp, errors: as for `crease_borders`.
     """
     most_corners = _MOST_CORNERS[preset]
