@@ -115,7 +115,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.remesh_to_quads,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "target": 200, "size": None},
-            **{"options": lsgp.Options(seamless=lsgp.Seamless()), "count": 4, "progress": None},
+            **{"options": lsgp.Options(seamless=lsgp.Seamless()), "count": 4, "polish": True, "progress": None},
         },
     ),
     "singular_values": (lsgp.singular_values, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),

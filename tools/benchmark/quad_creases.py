@@ -60,7 +60,7 @@ def main() -> None:
             begin = time.process_time()
             mesh = lsgp.remesh_to_quads(surface, target=arguments.quads, options=options).mesh
             seconds = time.process_time() - begin
-            quads = Quads(mesh.positions, mesh.quads.astype(np.int64), seconds)
+            quads = Quads(mesh.positions, mesh.quads.astype(np.int64), 0, seconds)
             quality = lsgp.quad_quality(quads.positions, quads.faces)
             kept.append(f"{kept_share(surface, quads):.2f}")
             counts.append(str(irregular(quads)))

@@ -28,13 +28,14 @@ class QuadSettings:
     """What the artist chose.
 
     options: of the layout. target: how many quads; None if the size determines it. size: the side of a quad in the
-    world, None likewise. direction: where rows of quads run.
+    world, None likewise. direction: where rows of quads run. polish: as of `remesh_to_quads`.
     """
 
     options: lsgp.Options
     target: int | None
     size: float | None
     direction: DirectionChoice
+    polish: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,7 @@ class QuadTask:
     options: lsgp.Options
     target: int | None
     size: float | None
+    polish: bool
 
     @property
     def threads(self) -> int:
@@ -68,7 +70,7 @@ def quad_task(region: Region, settings: QuadSettings) -> QuadTask:
     # Quads run on across seams, which therefore do not matter to the angles of cones either.
     region = replace(region, surface=replace(region.surface, seams=None))
     region = with_directions(region, settings.direction)
-    return QuadTask(region, region.own_cones, settings.options, settings.target, size)
+    return QuadTask(region, region.own_cones, settings.options, settings.target, size, settings.polish)
 
 
 def remesh_all(tasks: Sequence[QuadTask], progress: Progress | None = None) -> list[lsgp.QuadRemesh | Exception]:
@@ -87,5 +89,6 @@ def _remesh(task: QuadTask, progress: Progress | None) -> lsgp.QuadRemesh:
         target=task.target,
         size=task.size,
         options=task.options,
+        polish=task.polish,
         progress=progress,
     )

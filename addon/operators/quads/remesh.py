@@ -93,6 +93,12 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         f'Edges with the attribute "{identifiers.FEATURE_ATTRIBUTE}" are followed anyway',
         default=True,
     )
+    polish: bpy.props.BoolProperty(
+        name="Polish",
+        description="Move vertices over the surface, but for irregular ones and those on creases, so that edges are more "
+        "equal, with corners about as square as before",
+        default=False,
+    )
     coarse_grid: bpy.props.EnumProperty(
         name="Too Large",
         description="What to do if the quads are too large for the cones",
@@ -111,7 +117,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         layout.use_property_split = True
         layout.row().prop(self, "amount", expand=True)
         layout.prop(self, "count" if self.amount == "COUNT" else "size")
-        for name in ("rows", "follow_creases", "even_sizes", "coarse_grid", "hide_original"):
+        for name in ("rows", "follow_creases", "even_sizes", "polish", "coarse_grid", "hide_original"):
             layout.prop(self, name)
         self.draw_vertex_group(layout, context)
 
@@ -130,6 +136,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
             target=self.count if self.amount == "COUNT" else None,
             size=self.size if self.amount == "SIZE" else None,
             direction=chosen_direction(self.rows, tiles=True),
+            polish=self.polish,
         )
         return Groups(self.vertex_group), lambda _obj, region: quad_task(region, settings)
 

@@ -29,11 +29,12 @@ from ..stitching import is_collapsed
 from ..surface import Surface, surface_arrays
 from ..triangles import triangle_areas, uv_area
 from .divided_triangles import DividedSurface, divide_long_edges
+from .polishing import polished
 from .quad_mesh import QuadMesh, extract_quads
 from .quad_rows import QuadLines
 
-# Of the time that a remesh takes, where placing the cones and where the layouts end.
-_PLACED, _LAID_OUT = 0.6, 0.95
+# Of the time that a remesh takes, where placing the cones, the layouts and extraction before polishing end.
+_PLACED, _LAID_OUT, _EXTRACTED = 0.6, 0.95, 0.97
 # Of the time of placing, where cones for creases are placed, and of that of layouts, where the plain one and then those
 # along creases through these cones end.
 _FOR_FEATURES, _PLAIN, _ALONG = 0.1, 0.2, 0.6
@@ -112,6 +113,7 @@ def remesh_to_quads(
     size: float | None = None,
     options: Options | None = None,
     count: int | None = None,
+    polish: bool = False,
     progress: Progress | None = None,
 ) -> QuadRemesh:
     """Cover a closed surface with quads whose irregular vertices are the cones.
@@ -127,6 +129,8 @@ def remesh_to_quads(
     options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless(), straighten=True)`. Its
         `seamless` must not have a size, and uses the square lattice without parity. With `straighten` creases of hard
         surfaces become rows of edges, and automatic cones are chosen for that.
+    polish: whether vertices, but for irregular ones and those on features, then move over the surface, so that edges
+        are more equal, with corners about as square as before; no quad gets a bad corner that had none.
     If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
     progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
     work is done; COMPONENT_SKIPPED if a component has no layout; TOO_MANY_QUADS.
@@ -138,7 +142,7 @@ def remesh_to_quads(
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
-    asked = (GivenCones.of(cones, angles, count), target, size, _options(options))
+    asked = (GivenCones.of(cones, angles, count), target, size, _options(options), arguments.flag("polish", polish))
     if not (surface.may_collapse and is_collapsed(surface.triangles).any()):
         return _remeshed(surface, *asked, progress)
     whole = np.flatnonzero(~is_collapsed(surface.triangles)).astype(np.int32)
@@ -163,6 +167,7 @@ def _remeshed(
     target: int | None,
     size: float | None,
     chosen: Options,
+    polish: bool,
     progress: Progress | None,
 ) -> QuadRemesh:
     """Of a surface without seams whose triangles have three vertices each."""
@@ -183,7 +188,11 @@ def _remeshed(
         if gained is not None:
             finer, layouts, layout = gained
     asked = 0.0 if side is None else _area(surface) / side**2
-    mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, 1.0))
+    mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, _EXTRACTED if polish else 1.0))
+    if polish:
+        opened = surface if finer is None else finer.surface
+        features = opened.features if len(opened.features) else layout.seamless.creases
+        mesh = polished(opened, mesh, features, share_of(progress, _EXTRACTED, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     if finer is None:
         return QuadRemesh(mesh, layout, warnings, surface)
@@ -349,10 +358,8 @@ def _along_features(
     for_features, usual = cones
     plain = _Layouts(solver, usual, replace(options, straighten=False))
     first = plain.first(share_of(progress, 0.0, _PLAIN))
-    found = None
-    if len(solver.surface.features) or _may_be_affordable(solver, for_features, options, first, progress):
-        along = share_of(progress, _PLAIN, _ALONG)
-        found = or_none(lambda: _whole_or_between(solver, target, for_features, options, along))
+    along = share_of(progress, _PLAIN, _ALONG)
+    found = or_none(lambda: _whole_or_between(solver, target, for_features, options, along))
     affordable = [found] if found is not None and _is_affordable(found[1], first) else []
     if affordable and not releases_many_features(affordable[0][1]):
         return affordable[0]
@@ -378,15 +385,6 @@ def _whole_or_between(
     between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
     other = between.nearest(target, share_of(progress, 0.5, 1.0))
     return (between, other) if feature_share(other) > feature_share(layout) else (layouts, layout)
-
-
-def _may_be_affordable(
-    solver: Solver, cones: CompletedCones, options: Options, plain: Result, progress: Progress | None
-) -> bool:
-    """Whether these cones by themselves cost less stretch than following creases may: rows along them take more."""
-    alone = _Layouts(solver, cones, replace(options, straighten=False))
-    layout = or_none(lambda: alone.first(share_of(progress, _PLAIN, _PLAIN)))
-    return layout is not None and layout.distortion.l2_stretch <= _MOST_L2_ALONG * plain.distortion.l2_stretch
 
 
 def _missed(layout: Result, target: int) -> float:

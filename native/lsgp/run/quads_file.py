@@ -69,6 +69,11 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         help="do not follow the creases of hard surfaces, which needs further irregular vertices and distorts quads; "
         "by default rows of quads run along them where that costs at most a fifth of L2 stretch",
     )
+    quads.add_argument(
+        "--polish",
+        action="store_true",
+        help="then move vertices over the surface, so that edges are more equal at corners about as square as before",
+    )
     add_stitch_option(quads, default=True)
     quads.add_argument(
         "--coarse-grid",
@@ -106,6 +111,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
             size=args.size,
             options=options,
             count=cone_count(args),
+            polish=args.polish,
             progress=progress,
         )
     mesh = PolygonMesh(remesh.mesh.positions, remesh.mesh.quads.ravel(), np.full(len(remesh.mesh.quads), 4, np.int64))

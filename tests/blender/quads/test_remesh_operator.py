@@ -132,6 +132,20 @@ def test_even_sizes_are_more_even():
     assert spread[True] < spread[False]
 
 
+def test_polishing_moves_what_is_regular_over_the_surface():
+    ball = add_ball()
+    made = {}
+    for polish in (False, True):
+        select_only(ball)
+        made[polish] = remesh(count=1000, polish=polish)
+    rough, polished = (positions(made[polish]) for polish in (False, True))
+    is_irregular = valences(made[True]) != 4
+    np.testing.assert_array_equal(rough[is_irregular], polished[is_irregular])
+    assert (rough[~is_irregular] != polished[~is_irregular]).any(axis=1).mean() > 0.5
+    spread = [np.std(side_lengths(each)) / np.mean(side_lengths(each)) for each in (made[False], made[True])]
+    assert spread[1] < spread[0]
+
+
 def test_marked_cones_are_the_irregular_vertices():
     ball = add_ball()
     cones = positions(ball)[marked(ball)]

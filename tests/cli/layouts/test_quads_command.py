@@ -95,6 +95,14 @@ def test_low_stretch_makes_edges_more_alike(lsgp, ball_files: Path) -> None:
     assert deviations[1] < 0.9 * deviations[0]
 
 
+def test_polish_makes_edges_more_alike(lsgp, ball_files: Path) -> None:
+    deviations = []
+    for options in ((), ("--polish",)):
+        lsgp(*QUADS, "--target", 300, "--cones", "cones.json", *options, "--report", "report.json")
+        deviations.append(json.loads((ball_files / "report.json").read_text())["quads"]["edge_deviation"])
+    assert deviations[1] < deviations[0]
+
+
 def test_an_open_mesh_is_refused_with_its_border(lsgp, tmp_path: Path) -> None:
     mesh = cylinder()
     (tmp_path / "tube.obj").write_text(obj_text(mesh.positions, mesh.triangles.tolist()))

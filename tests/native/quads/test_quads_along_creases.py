@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
 from sanitized_run import many_solves
 from scipy.spatial import HalfspaceIntersection, cKDTree
-from shared_meshes import hard_mesh
+from shared_meshes import hard_mesh, shared_mesh
 from zoo import closed
 
 EXACT = 1e-6  # of the size
@@ -184,6 +184,12 @@ def test_a_surface_that_is_fine_or_soft_is_not_divided() -> None:
     for mesh in (meshes.cube(12), meshes.bumpy_sphere(2), meshes.icosphere(1)):
         given = surface(mesh)
         assert lsgp.remesh_to_quads(given, target=200).surface == given
+
+
+def test_cones_that_cost_much_by_themselves_are_placed_where_creases_gain_by_them() -> None:
+    mesh = shared_mesh("fandisk")
+    remesh = lsgp.remesh_to_quads(surface(mesh), target=500)
+    assert remesh.layout.seamless.feature_share > 0.9
 
 
 def test_without_straight_sides_creases_are_not_followed() -> None:
