@@ -95,8 +95,8 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
     )
     polish: bpy.props.BoolProperty(
         name="Polish",
-        description="Move vertices over the surface, but for irregular ones and those on creases, so that edges are more "
-        "equal, with corners about as square as before",
+        description="Move vertices over the surface, but for irregular ones and those on creases, so that edges are "
+        "more equal, with corners about as square as before",
         default=False,
     )
     coarse_grid: bpy.props.EnumProperty(
