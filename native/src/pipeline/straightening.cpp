@@ -97,12 +97,13 @@ class SideSearch {
   // Marked features that are straight already stay so, whatever they have cost.
   void keep_straight() {
     if (order_.straight == 0) return;
-    straight_.sides.assign(sides_.begin(), sides_.begin() + order_.straight);
-    ComponentMap kept = with(straight_, map_);
-    if (kept.validity.defects() == 0) {
-      most_l2_ = std::max(most_l2_, l2_of(task_.surface, kept));
-      best_ = std::move(kept);
-    }
+    StraightSides straight = straight_;
+    straight.sides.assign(sides_.begin(), sides_.begin() + order_.straight);
+    ComponentMap kept = with(straight, map_);
+    if (kept.validity.defects() > 0) return;
+    most_l2_ = std::max(most_l2_, l2_of(task_.surface, kept));
+    straight_ = std::move(straight);
+    best_ = std::move(kept);
   }
 
   // The map with these sides, sought from the original one or one that is turned already.  Throws SOLVER_FAILED.
