@@ -85,7 +85,7 @@ def test_a_loop_around_a_closed_surface_with_cones_is_straight() -> None:
     assert_angles_met(mesh, along)
 
 
-@pytest.mark.parametrize("size, sway", [((1, 1, 1), 0.4), ((0.8, 1.5, 1.2), 0.3), ((1.4, 0.6, 1.8), 0.5)])
+@pytest.mark.parametrize("size, sway", [((1, 1, 1), 0.4), ((0.8, 1.5, 1.2), 0.3), ((1, 1, 1.5), 0.3)])
 def test_cones_are_such_that_marked_edges_can_be_straight(size: tuple[float, float, float], sway: float) -> None:
     """Around cones of other angles than whole quarter turns, creases cannot all run along u and v."""
     mesh = closed.beveled_box(4, 0.15, size)
