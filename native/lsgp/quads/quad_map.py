@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..surface import Surface
+from .edge_partners import edge_partners
 from .quad_mesh import QuadMesh
 
 Indices = NDArray[np.int64]
@@ -160,17 +161,8 @@ class _Ways:
 
 
 def _beyond(triangles: IndexArray, corner_uv: FloatArray) -> Indices:
-    """(3m,) the same edge in the triangle beyond, -1 at seams. Edge 3 t + c of triangle t is from its corner c to the
-    next."""
-    start, end = triangles.ravel().astype(np.int64), np.roll(triangles, -1, axis=1).ravel().astype(np.int64)
-    count = int(start.max(initial=0)) + 1
-    is_triangle = np.repeat((triangles != np.roll(triangles, -1, axis=1)).all(axis=1), 3)
-    edges = np.flatnonzero(is_triangle)
-    keys = (start * count + end)[edges]
-    order = np.argsort(keys, kind="stable")
-    wanted = end * count + start
-    found = np.minimum(np.searchsorted(keys[order], wanted), len(keys) - 1)
-    partner = np.where(is_triangle & (keys[order][found] == wanted), edges[order][found], -1)
+    """(3m,) the same edge in the triangle beyond, -1 at seams."""
+    partner = edge_partners(triangles)
     at_start, at_end = corner_uv.reshape(-1, 2), np.roll(corner_uv, -1, axis=1).reshape(-1, 2)
     limit = _ROUNDING * np.abs(corner_uv).max(initial=0.0)
     apart = np.maximum(np.abs(at_end[partner] - at_start), np.abs(at_start[partner] - at_end)).max(axis=1) > limit

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
 from ..surface import Surface
+from .edge_partners import edge_ends, edge_partners
 
 Indices = NDArray[np.int64]
 
@@ -17,22 +18,13 @@ _MOST_STEPS = 64
 
 
 class SurfaceWalk:
-    """Walks from places on triangles.
-
-    Edge 3 t + c of triangle t is from its corner c to the next.
-    """
+    """Walks from places on triangles, whose edges are numbered as by `edge_ends`."""
 
     def __init__(self, surface: Surface, walls: Indices) -> None:
         """walls: keys of edges that no walk crosses."""
         self._corners = surface.positions[surface.triangles]
-        start = surface.triangles.ravel().astype(np.int64)
-        end = np.roll(surface.triangles, -1, axis=1).ravel().astype(np.int64)
-        count = len(surface.positions)
-        keys = start * count + end
-        order = np.argsort(keys, kind="stable")
-        found = order[np.minimum(np.searchsorted(keys[order], end * count + start), len(keys) - 1)]
-        is_wall = np.isin(edge_keys(start, end, count), walls)
-        self._partner = np.where((keys[found] == end * count + start) & ~is_wall, found, -1)
+        is_wall = np.isin(edge_keys(*edge_ends(surface.triangles), len(surface.positions)), walls)
+        self._partner = np.where(is_wall, -1, edge_partners(surface.triangles))
 
     def positions(self, triangles: Indices, weights: FloatArray) -> FloatArray:
         """(k, 3) of places."""
