@@ -207,9 +207,8 @@ void LayoutQuantizer::align_features() {
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
   // What straight sides have cost already counts.
-  const double l2 = natural_l2_ > 0
-                        ? natural_l2_
-                        : l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
+  const double l2 =
+      natural_l2_ > 0 ? natural_l2_ : l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
   const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};
