@@ -377,7 +377,7 @@ def test_a_mesh_without_uv_maps_gets_none():
 
 def edges_where(obj, values):
     """The middles of the edges with a value, as a set of rounded places."""
-    ends = np.array([[obj.data.vertices[v].co for v in edge.vertices] for edge in obj.data.edges])
+    ends = np.array([[obj.data.vertices[v].co for v in edge.vertices] for edge in obj.data.edges], float)
     return {tuple(np.round(middle, 3) + 0.0) for middle in ends.mean(axis=1)[np.array(values, bool)]}
 
 
