@@ -16,8 +16,8 @@ from .components import Components, keys_of
 from .map_comparison import (
     SMALL_MESH,
     WELL_FILLED,
-    defects,
     has_direction,
+    is_as_good,
     island_count,
     least_filled,
     measure_of_filling,
@@ -92,7 +92,7 @@ class LessStretch:
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
         """Where the map is stretched no more, has no further defects and fills the square at most three tenths less."""
-        if not _is_as_good(bordered, usual, usual.distortion.l2_stretch):
+        if not is_as_good(bordered, usual, usual.distortion.l2_stretch):
             return False
         filled = measure_of_filling(usual, self.square_share, progress)
         return filled(bordered) >= _LEAST_FILLED_WITH_BORDERS * filled(usual)
@@ -128,7 +128,7 @@ class FullerSquare:
         """Where the usual map, whose square is emptier, does not make up for that by fewer islands."""
         more = island_count(bordered) - island_count(usual)
         has_few = not self.keeps_few or more <= worthwhile(usual)
-        if not (has_few and _is_as_good(bordered, usual, (1 + _ROUNDING) * usual.distortion.l2_stretch)):
+        if not (has_few and is_as_good(bordered, usual, (1 + _ROUNDING) * usual.distortion.l2_stretch)):
             return False
         filled = measure_of_filling(usual, self.square_share, progress)
         return filled(usual) < least_filled(-more, bordered) * filled(bordered)
@@ -162,7 +162,7 @@ class AlongLattice:
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
         """Where all have gained, and it has no further defects."""
-        return bordered.solved.tolist() == usual.solved.tolist() and defects(bordered) <= defects(usual)
+        return is_as_good(bordered, usual, np.inf)
 
     def _if_large(self, is_some: NDArray[np.bool_], chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
         areas = self.components.areas()
@@ -183,11 +183,3 @@ class AlongLattice:
             for some in (edges, edges[run_along_axes(self.components.surface, result, edges)])
         )
         return np.where(every > 0, along / np.where(every > 0, every, 1), 1.0)
-
-
-def _is_as_good(bordered: Result, usual: Result, most_l2: float) -> bool:
-    return (
-        bordered.solved.tolist() == usual.solved.tolist()
-        and defects(bordered) <= defects(usual)
-        and bordered.distortion.l2_stretch <= most_l2
-    )

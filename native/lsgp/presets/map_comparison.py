@@ -86,9 +86,7 @@ def may_replace_map(
     if saves_cuts:
         most_l2 = max(most_l2, _TARGET_L2)
     if not (
-        symmetric.solved.tolist() == usual.solved.tolist()
-        and defects(symmetric) <= defects(usual)
-        and symmetric.distortion.l2_stretch <= most_l2
+        is_as_good(symmetric, usual, most_l2)
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and more <= (_PAIR if has_few else islands // ISLANDS_FOR_ONE)
     ):
@@ -131,12 +129,14 @@ def may_replace_undivided(divided: Result, usual: Result, progress: Progress | N
     return _filled_when_packed(usual, progress) < most * _filled_when_packed(divided, progress)
 
 
-def is_as_good(other: Result, usual: Result) -> bool:
-    """Whether a map with other islands has L2 stretch up to 1 % more, and no further defects."""
+def is_as_good(other: Result, usual: Result, most_l2: float | None = None) -> bool:
+    """Whether another map has the same triangles, no further defects, and up to this L2 stretch; None: 1 % more."""
+    if most_l2 is None:
+        most_l2 = _MOST_L2 * usual.distortion.l2_stretch
     return (
         other.solved.tolist() == usual.solved.tolist()
         and defects(other) <= defects(usual)
-        and other.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+        and other.distortion.l2_stretch <= most_l2
     )
 
 
@@ -184,12 +184,8 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     """
     if feature_share(usual) > feature_share(along):
         return False
-    return (
-        along.solved.tolist() == usual.solved.tolist()
-        and defects(along) <= defects(usual)
-        and along.distortion.l2_stretch <= _most_growth(feature_share(usual)) * usual.distortion.l2_stretch
-        and runs_along_features(along)
-    )
+    most_l2 = _most_growth(feature_share(usual)) * usual.distortion.l2_stretch
+    return is_as_good(along, usual, most_l2) and runs_along_features(along)
 
 
 def may_replace_straighter(straighter: Result, usual: Result) -> bool:
@@ -198,10 +194,8 @@ def may_replace_straighter(straighter: Result, usual: Result) -> bool:
     gain = feature_share(straighter) - feature_share(usual)
     cost = straighter.distortion.l2_stretch - usual.distortion.l2_stretch
     return (
-        straighter.solved.tolist() == usual.solved.tolist()
-        and defects(straighter) <= defects(usual)
+        is_as_good(straighter, usual, _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch)
         and island_count(straighter) <= island_count(usual)
-        and straighter.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
         and gain > max(0.0, _FEATURES_FOR_STRETCH * cost)
     )
 

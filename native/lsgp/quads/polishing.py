@@ -93,8 +93,8 @@ def _toward_squares(positions: FloatArray, quads: IndexArray) -> FloatArray:
     # Half a diagonal; the other one is a quarter turn on.
     half = (first + np.cross(second, normal)) / 2
     length = np.linalg.norm(half, axis=1, keepdims=True)
-    mean = math.sqrt(2 * float(area.mean())) / math.sqrt(2)
-    wanted = (1 - _TO_MEAN_SIZE) * length + _TO_MEAN_SIZE * mean
+    # Of a square, `area` is the square of half its diagonal.
+    wanted = (1 - _TO_MEAN_SIZE) * length + _TO_MEAN_SIZE * math.sqrt(area.mean())
     half *= np.divide(wanted, length, out=np.ones_like(length), where=length > 0)
     other = np.cross(normal, half)
     goals = np.stack([middle + half, middle + other, middle - half, middle - other], axis=1)
