@@ -43,14 +43,14 @@ Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
-// Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, directions, features, and
-// whether triangles may collapse.
+// Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, directions, features,
+// whether triangles may collapse, and the scale.
 using SurfaceArrays = std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray,
-                                 IndexArray, FloatArray, IndexArray, bool>;
+                                 IndexArray, FloatArray, IndexArray, bool, FloatArray>;
 
 lsgp::Surface to_surface(const SurfaceArrays& arrays) {
-  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions, features, may_collapse] =
-      arrays;
+  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions, features, may_collapse,
+               scale] = arrays;
   lsgp::Surface surface;
   surface.positions = to_matrix<lsgp::Positions>(positions);
   surface.triangles = to_matrix<lsgp::Triangles>(triangles);
@@ -62,6 +62,7 @@ lsgp::Surface to_surface(const SurfaceArrays& arrays) {
   surface.cut_costs = to_vector_of_numbers(cut_costs);
   surface.directions = to_matrix<lsgp::Positions>(directions);
   surface.may_collapse = may_collapse;
+  surface.scale = to_vector_of_numbers(scale);
   return surface;
 }
 

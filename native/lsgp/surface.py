@@ -36,6 +36,10 @@ class Surface(EqualByContent, ShortRepr):
         `Result.direction_errors` has the deviations.
     features: (f, 2) int32, edges, also of boundaries, that are to run straight along u or v; `feature_edges` finds
         some. They have precedence over creases that are straightened anyway; `Result.features` has those that do not.
+    scale: (n,) float64, 1e-6 to 1e6: the factor by which lengths count at each vertex, that of an edge being the mean
+        of its ends; None: 1. Maps, cones and grids are made, and their distortion is measured, as if the surface had
+        these lengths; no side of a triangle may be longer than the others together then. Creases and directions are
+        those of the positions.
     may_collapse: whether triangles may name a vertex twice, as those at edges without length do with the vertices of
         `stitch_borders`. They are no part of the surface, and get the coordinates of a neighbor.
     """
@@ -50,6 +54,7 @@ class Surface(EqualByContent, ShortRepr):
     directions: FloatArray | None = None
     features: IndexArray | None = None
     may_collapse: bool = False
+    scale: FloatArray | None = None
 
     if TYPE_CHECKING:  # what may be passed, which becomes what the fields are
 
@@ -65,6 +70,7 @@ class Surface(EqualByContent, ShortRepr):
             directions: ArrayLike | None = None,
             features: ArrayLike | None = None,
             may_collapse: bool = False,
+            scale: ArrayLike | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -76,9 +82,10 @@ class Surface(EqualByContent, ShortRepr):
             marked = getattr(self, name)
             rows = np.empty((0, 2), np.int32) if marked is None else marked
             set_field(self, name, arguments.index_rows(name, rows, 2))
-        if self.importance is not None:
-            shape = (len(self.positions),)
-            set_field(self, "importance", arguments.floats_of_shape("importance", self.importance, shape))
+        for name in ("importance", "scale"):
+            if getattr(self, name) is not None:
+                shape = (len(self.positions),)
+                set_field(self, name, arguments.floats_of_shape(name, getattr(self, name), shape))
         if self.cut_costs is not None:
             shape = (0 if self.edges is None else len(self.edges),)
             set_field(self, "cut_costs", arguments.floats_of_shape("cut_costs", self.cut_costs, shape))
@@ -108,12 +115,13 @@ class Pins(EqualByContent, ShortRepr):
 
 def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     arguments.require_type("surface", surface, Surface)
-    importance, cut_costs = (np.empty(0) if a is None else a for a in (surface.importance, surface.cut_costs))
+    of_elements = (surface.importance, surface.cut_costs, surface.scale)
+    importance, cut_costs, scale = (np.empty(0) if values is None else values for values in of_elements)
     directions = np.empty((0, 3)) if surface.directions is None else surface.directions
     seams, borders, features = surface.seams, surface.borders, surface.features
     return (
         *(surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs),
-        *(borders, directions, features, surface.may_collapse),
+        *(borders, directions, features, surface.may_collapse, scale),
     )
 
 

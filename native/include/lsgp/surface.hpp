@@ -29,6 +29,7 @@ struct Surface {
   VertexPairs borders;               // (b, 2) edges where the surface ends, whatever the meaning of seams
   VertexPairs features;              // (f, 2) edges that are to run straight along u or v
   Positions directions;              // (m, 3) desired direction of v at each triangle, weighted by length, or empty
+  Eigen::VectorXd scale;             // (n) factor of lengths at vertices, or empty: 1
   bool may_collapse = false;  // triangles may name a vertex twice: no part of the surface, mapped to an edge of it
 };
 

@@ -46,7 +46,9 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   for (Index i = 0; i < options.sharp.rows(); ++i) sharp.insert(std::minmax(options.sharp(i, 0), options.sharp(i, 1)));
   const Cones given{cones, Array<std::optional<double>>(cones.size())};
   std::vector<Finding> findings;
-  const Work work = prepare({surface, given, Options{}}, findings);
+  Surface in_space = surface;  // creases are of the shape, whatever its metric
+  in_space.scale.resize(0);
+  const Work work = prepare({in_space, given, Options{}}, findings);
   const PerComponent<Component>& components = work.topology.components;
   Array<Index> edges;
   for_each_component(components, findings, monitor, [&](std::size_t i) {

@@ -33,6 +33,7 @@ MeasuredSurface finite_triangles(const Surface& surface, const CornerUv& corner_
     if (corner_uv.middleRows<3>(3 * f).allFinite()) measured.triangles.push_back(f);
   }
   measured.surface.positions = surface.positions;
+  measured.surface.scale = surface.scale;
   measured.surface.triangles.resize(ssize(measured.triangles), 3);
   for (Eigen::Index i = 0; i < ssize(measured.triangles); ++i)
     measured.surface.triangles.row(i) = surface.triangles.row(measured.triangles[i]);

@@ -20,6 +20,7 @@ Surface surface_of(const HalfedgeMesh& mesh) {
   }
   Surface surface;
   surface.positions = mesh.positions;
+  surface.scale = mesh.scale;
   surface.triangles = mesh.triangles;
   surface.seams = to_vertex_pairs(seams);
   surface.edges = to_vertex_pairs(edges);

@@ -163,6 +163,10 @@ Surface Preview::Kept::smaller(const ConedSurface& coned) const {
     out.importance.resize(coned.node_count());
     for (Index i = 0; i < coned.node_count(); ++i) out.importance[i] = surface.importance[coned.vertex_of(i)];
   }
+  if (surface.scale.size() > 0) {
+    out.scale.resize(coned.node_count());
+    for (Index i = 0; i < coned.node_count(); ++i) out.scale[i] = surface.scale[coned.vertex_of(i)];
+  }
   if (directions.rows() > 0) {
     out.directions.resize(out.triangles.rows(), 3);
     for (Index row = 0; row < out.triangles.rows(); ++row) {

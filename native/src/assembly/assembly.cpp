@@ -66,7 +66,8 @@ Assembly::Assembly(const Surface& surface, const PerComponent<Component>& compon
   cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   for (const Component& component : components) {
     for (Index f = 0; f < component.mesh.triangle_count(); ++f) {
-      surface_area_ += area_normal(component.mesh.positions, component.mesh.triangles, f).norm() / 2;
+      const HalfedgeMesh& mesh = component.mesh;
+      surface_area_ += two_sides(mesh.positions, mesh.triangles, mesh.scale, f).doubled_area / 2;
     }
   }
 }

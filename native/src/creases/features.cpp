@@ -56,11 +56,12 @@ bool are_lines(const HalfedgeMesh& mesh, const PerHalfedge<char>& feature) {
 CreaseCurvature::CreaseCurvature(const MetricMesh& surface, const PerVertex<char>& is_at_crease) {
   const HalfedgeMesh& mesh = surface.mesh;
   UnionFind point = coincident_vertices(mesh);
+  const Eigen::VectorXd own = defects_in_space(surface);
   PerVertex<double> defect(mesh.vertex_count(), 0);
   PerVertex<char> is_inside(mesh.vertex_count(), 1), is_crease(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const Index at = point.find(v);
-    defect[at] += surface.geometry.angle_defect[v];
+    defect[at] += own[v];
     if (mesh.loop_of_vertex[v] != none) is_inside[at] = 0;
     if (is_at_crease[v]) is_crease[at] = 1;
   }

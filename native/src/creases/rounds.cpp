@@ -100,10 +100,11 @@ bool has_round_shape(const MetricMesh& surface) {
     sum[mesh.origin(h)] += bend[h];
     sum[mesh.target(h)] += bend[h];
   }
+  const Eigen::VectorXd defect = defects_in_space(surface);
   double curvature = 0, of_round = 0;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (mesh.loop_of_vertex[v] != none) continue;
-    const double own = std::abs(surface.geometry.angle_defect[v]);
+    const double own = std::abs(defect[v]);
     curvature += own;
     if (round[v] > sharp[v]) of_round += own;
   }

@@ -18,13 +18,18 @@ constexpr double least_margin = 1e-4;  // of triangle inequalities where there a
 
 Index triangle_count(const Geometry& geometry) { return static_cast<Index>(geometry.area.size()); }
 
-// Angles, half cotangents and area of one triangle from its three edge lengths (Kahan's stable area).
-void measure_from_lengths(Geometry& geometry, Index f) {
-  double sorted[3] = {geometry.length[3 * f], geometry.length[3 * f + 1], geometry.length[3 * f + 2]};
+// Twice the area of a triangle with these sides; 0 where there is none (Kahan's stable formula).
+double doubled_area_between(const Eigen::Vector3d& sides) {
+  double sorted[3] = {sides[0], sides[1], sides[2]};
   std::sort(sorted, sorted + 3, [](double a, double b) { return a > b; });
   const double a = sorted[0], b = sorted[1], c = sorted[2];
   const double square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
-  const double area = geometry.area[f] = std::sqrt(std::max(square, 0.0)) / 4;
+  return std::sqrt(std::max(square, 0.0)) / 2;
+}
+
+// Angles, half cotangents and area of one triangle from its three edge lengths.
+void measure_from_lengths(Geometry& geometry, Index f) {
+  const double area = geometry.area[f] = doubled_area_between(geometry.length.segment<3>(3 * f)) / 2;
   for (int i = 0; i < 3; ++i) {
     const double opposite = geometry.length[3 * f + i], left = geometry.length[3 * f + (i + 1) % 3],
                  right = geometry.length[3 * f + (i + 2) % 3];
@@ -34,8 +39,8 @@ void measure_from_lengths(Geometry& geometry, Index f) {
   }
 }
 
-// From the positions. Returns whether the triangle is degenerate.
-bool measure_from_positions(const HalfedgeMesh& mesh, Geometry& geometry, Index f) {
+// From the positions.
+void measure_from_positions(const HalfedgeMesh& mesh, Geometry& geometry, Index f) {
   Eigen::Vector3d corner[3], edge[3];
   for (int c = 0; c < 3; ++c) corner[c] = mesh.positions.row(mesh.triangles(f, c));
   for (int c = 0; c < 3; ++c) {
@@ -43,14 +48,23 @@ bool measure_from_positions(const HalfedgeMesh& mesh, Geometry& geometry, Index 
     geometry.length[3 * f + c] = edge[c].norm();
   }
   const double doubled_area = edge[0].cross(edge[1]).norm();
-  const double longest = geometry.length.segment<3>(3 * f).maxCoeff();
   geometry.area[f] = doubled_area / 2;
   for (int c = 0; c < 3; ++c) {
     const double dot = -edge[(c + 1) % 3].dot(edge[(c + 2) % 3]);  // at the corner opposite halfedge c
     geometry.half_cotangent[3 * f + c] = dot / (2 * doubled_area);
     geometry.angle[3 * f + (c + 2) % 3] = std::atan2(doubled_area, dot);
   }
-  return !(doubled_area > degenerate_height * longest * longest);
+}
+
+// Returns whether the triangle is degenerate.
+bool measure(const HalfedgeMesh& mesh, const Eigen::VectorXd& scale, Geometry& geometry, Index f) {
+  measure_from_positions(mesh, geometry, f);
+  if (scale.size() > 0) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) geometry.length[h] *= edge_scale(scale, mesh.origin(h), mesh.target(h));
+    measure_from_lengths(geometry, f);
+  }
+  const double longest = geometry.length.segment<3>(3 * f).maxCoeff();
+  return !(2 * geometry.area[f] > degenerate_height * longest * longest);
 }
 
 void measure_from_lengths(Geometry& geometry) {
@@ -107,18 +121,25 @@ Geometry completed(const HalfedgeMesh& mesh, Geometry geometry) {
   return geometry;
 }
 
-}  // namespace
-
-Geometry build_geometry(const HalfedgeMesh& mesh) {
+Geometry build_geometry(const HalfedgeMesh& mesh, const Eigen::VectorXd& scale) {
   Geometry geometry = unmeasured(mesh);
   PerTriangle<char> is_degenerate(mesh.triangle_count());
   for_each_at_once(mesh.triangle_count(),
-                   [&](Index f) { is_degenerate[f] = measure_from_positions(mesh, geometry, f); });
+                   [&](Index f) { is_degenerate[f] = measure(mesh, scale, geometry, f); });
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (is_degenerate[f]) geometry.degenerate.push_back(f);
   }
   if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
   return completed(mesh, std::move(geometry));
+}
+
+}  // namespace
+
+Geometry build_geometry(const HalfedgeMesh& mesh) { return build_geometry(mesh, mesh.scale); }
+
+Eigen::VectorXd defects_in_space(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  return mesh.scale.size() == 0 ? surface.geometry.angle_defect : build_geometry(mesh, {}).angle_defect;
 }
 
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
@@ -131,6 +152,18 @@ Geometry geometry_of_lengths(const HalfedgeMesh& mesh, Eigen::VectorXd length) {
   geometry.length = std::move(length);
   measure_from_lengths(geometry);
   return completed(mesh, std::move(geometry));
+}
+
+TwoSides two_sides(const Positions& positions, const Triangles& triangles, const Eigen::VectorXd& scale, Index f) {
+  Eigen::Vector3d corner[3];
+  for (int c = 0; c < 3; ++c) corner[c] = positions.row(triangles(f, c));
+  const Eigen::Vector3d first = corner[1] - corner[0], second = corner[2] - corner[0];
+  if (scale.size() == 0) return {first.squaredNorm(), first.dot(second), first.cross(second).norm()};
+  const auto length = [&](int a, int b) {
+    return edge_scale(scale, triangles(f, a), triangles(f, b)) * (corner[b] - corner[a]).norm();
+  };
+  const Eigen::Vector3d sides(length(0, 1), length(1, 2), length(2, 0)), squares = sides.cwiseAbs2();
+  return {squares[0], (squares[0] + squares[2] - squares[1]) / 2, doubled_area_between(sides)};
 }
 
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f) {

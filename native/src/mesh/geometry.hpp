@@ -27,15 +27,31 @@ struct MetricMesh {
   const Geometry& geometry;
 };
 
+// The factor of an edge's length in the metric: the mean of those at its ends, which is exact where they are linear.
+inline double edge_scale(const Eigen::VectorXd& scale, Index a, Index b) {
+  return scale.size() == 0 ? 1.0 : (scale[a] + scale[b]) / 2;
+}
+
 // Degenerate triangles get area: the smallest constant that gives every triangle inequality a margin is added to all
 // lengths (Sharp and Crane 2020, section 4.5).
 Geometry build_geometry(const HalfedgeMesh& mesh);
+
+// The angle defects of the surface in space, whatever the scale of its metric: those of its shape.
+Eigen::VectorXd defects_in_space(const MetricMesh& surface);
 
 // The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 
 // A metric with other lengths, (3m), of its edges.
 Geometry geometry_of_lengths(const HalfedgeMesh& mesh, Eigen::VectorXd length);
+
+// Two sides of a triangle in the metric, from its first corner.
+struct TwoSides {
+  double square;        // of the first one's length
+  double dot;           // their product
+  double doubled_area;  // between them
+};
+TwoSides two_sides(const Positions& positions, const Triangles& triangles, const Eigen::VectorXd& scale, Index f);
 
 // The normal of a triangle in space; its length is twice the area.
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);

@@ -194,6 +194,9 @@ void number_vertices(const Surface& surface, Component& component) {
   mesh.positions.resize(mesh.vertex_count(), 3);
   for (Index v = 0; v < mesh.vertex_count(); ++v)
     mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
+  if (surface.scale.size() == 0) return;
+  mesh.scale.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) mesh.scale[v] = surface.scale[component.source_vertex[v]];
 }
 
 void mark_feature(Index h, HalfedgeMesh& mesh) {

@@ -24,6 +24,7 @@ inline Index prev(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
 // A connected, oriented manifold surface in its own numbering.
 struct HalfedgeMesh {
   Positions positions;                   // (n, 3)
+  Eigen::VectorXd scale;                 // (n) factor of lengths in the metric, or empty: 1
   Triangles triangles;                   // (m, 3)
   PerHalfedge<Index> twin;               // none on the boundary
   PerVertex<Index> outgoing;             // a halfedge leaving each vertex; on the boundary the one without a twin

@@ -132,13 +132,14 @@ void hand_out_directions(const Positions& directions, const Options& options, Wo
   }
 }
 
-// The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
+// The power of two that brings the surface's metric to about unit size: exact, and areas can neither overflow nor vanish.
 double unit_scale(const Surface& surface) {
   double largest = 0;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     const auto corner = surface.positions.row(surface.triangles(f, 0));
     for (const int c : {1, 2}) {
-      largest = std::max(largest, (surface.positions.row(surface.triangles(f, c)) - corner).cwiseAbs().maxCoeff());
+      const double size = (surface.positions.row(surface.triangles(f, c)) - corner).cwiseAbs().maxCoeff();
+      largest = std::max(largest, size * edge_scale(surface.scale, surface.triangles(f, 0), surface.triangles(f, c)));
     }
   }
   return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
 
 namespace lsgp {
@@ -20,6 +21,8 @@ constexpr double smallest_extent = 1e-60;
 constexpr double farthest = 1e20;
 constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
 constexpr double largest_cost = 1e6;          // of a cut per length
+constexpr double smallest_scale = 1e-6, largest_scale = 1e6;
+constexpr double rounding_of_sides = 1e-9;  // of the longest one
 
 void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
   Array<Index> bad;
@@ -76,6 +79,40 @@ void require_importance(const Eigen::VectorXd& importance, Index vertex_count) {
                        " is negative or no finite number. Give weights of 0 or more."),
                 {ElementKind::vertices, bad});
   }
+}
+
+void require_scale(const Surface& surface, const PerVertex<char>& used) {
+  const Eigen::VectorXd& scale = surface.scale;
+  const Index n = static_cast<Index>(surface.positions.rows());
+  if (scale.size() == 0) return;
+  if (scale.size() != n) {
+    throw Error(Code::wrong_parameter, concat("There are ", scale.size(), " factors of lengths for ", n,
+                                              " vertices. Give one for each."));
+  }
+  Array<Index> bad;
+  for (Index v = 0; v < n; ++v) {
+    if (used[v] && !(scale[v] >= smallest_scale && scale[v] <= largest_scale)) bad.push_back(v);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::wrong_parameter,
+                concat("The factor of lengths at ", count(bad.size(), "vertex", "vertices"), " does not lie between ",
+                       smallest_scale, " and ", largest_scale, ". Give positive numbers around 1."),
+                {ElementKind::vertices, bad});
+  }
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    double length[3];
+    for (int c = 0; c < 3; ++c) {
+      const Index a = surface.triangles(f, c), b = surface.triangles(f, (c + 1) % 3);
+      length[c] = edge_scale(scale, a, b) * (surface.positions.row(b) - surface.positions.row(a)).norm();
+    }
+    const double longest = std::max({length[0], length[1], length[2]});
+    if (2 * longest - (length[0] + length[1] + length[2]) > rounding_of_sides * longest) bad.push_back(f);
+  }
+  if (bad.empty()) return;
+  throw Error(Code::wrong_parameter,
+              concat("With their factors of lengths ", count(bad.size(), "triangle has", "triangles have"),
+                     " a side longer than the two others together. Give factors that vary less, or smaller triangles."),
+              {ElementKind::triangles, bad});
 }
 
 void require_directions(const Surface& surface) {
@@ -215,6 +252,7 @@ void require_valid(const Surface& surface) {
   }
   require_extent(surface.positions, used);
   require_importance(surface.importance, n);
+  require_scale(surface, used);
   require_directions(surface);
 }
 

@@ -204,10 +204,11 @@ class PatchRounding {
 
 std::optional<PatchAngles> round_patch(const MetricMesh& patch) {
   const HalfedgeMesh& mesh = patch.mesh;
+  const Eigen::VectorXd defect = defects_in_space(patch);
   PerVertex<Index> at_border(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (mesh.loop_of_vertex[v] == none) continue;
-    const double angle = M_PI - patch.geometry.angle_defect[v];
+    const double angle = M_PI - defect[v];
     at_border[v] = std::clamp(static_cast<Index>(std::lround(angle / quarter)), Index(1), widest);
   }
   PatchRounding rounding(patch, std::move(at_border));

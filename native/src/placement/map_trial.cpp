@@ -22,6 +22,7 @@ bool is_visible(const SeamQuality& seams) {
 double measured_l2(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners) {
   Surface surface;
   surface.positions = mesh.positions;
+  surface.scale = mesh.scale;
   surface.triangles = mesh.triangles;
   CornerUv uv(corners.size(), 2);
   uv << corners.real(), corners.imag();

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/thread_team.hpp"
+#include "mesh/geometry.hpp"
 
 namespace lsgp {
 
@@ -40,20 +41,15 @@ struct Measured {
 };
 
 Measured measure(const Surface& surface, const CornerUv& corner_uv, Index f) {
-  Eigen::Vector3d p[3];
   Complex z[3];
-  for (int c = 0; c < 3; ++c) {
-    p[c] = surface.positions.row(surface.triangles(f, c));
-    z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
-  }
-  const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
-  const double square = first.squaredNorm();
+  for (int c = 0; c < 3; ++c) z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
+  const auto [square, dot, doubled] =
+      two_sides(surface.positions, surface.triangles, surface.scale, f);
   Measured out{};
-  const double doubled = first.cross(second).norm();
   if (!(doubled > 0)) return out;
   out.doubled = doubled;
   // The derivatives along the first edge and across it, times the edge's length.
-  const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * first.dot(second)) / doubled;
+  const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * dot) / doubled;
   const double both =
       std::sqrt(std::norm(along - Complex(0, 1) * across)) + std::sqrt(std::norm(along + Complex(0, 1) * across));
   out.largest_square = both * both / (4 * square);
