@@ -31,19 +31,18 @@ class TriangleDistortion(EqualByContent, ShortRepr):
 
 
 def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """(m,) sigma_1 >= sigma_2 >= 0 of each triangle's linear map from its plane to the texture.
+    """(m,) sigma_1 >= sigma_2 >= 0 of each triangle's linear map from its plane, with the lengths of `Surface.scale`, to
+    the texture.
 
     corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
     """
     arguments.require_type("surface", surface, Surface)
     arguments.require_indices("triangles", surface.triangles, len(surface.positions))
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
-    place = surface.positions[surface.triangles]
-    first, second = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
-    length, doubled = np.linalg.norm(first, axis=1), _doubled_areas(surface)
+    length, dot, doubled = _first_sides(surface)
     with np.errstate(divide="ignore", invalid="ignore"):
         # The triangle in its own plane: corners 0, length, x + i height.
-        x, height = (first * second).sum(axis=1) / length, doubled / length
+        x, height = dot / length, doubled / length
         z = uv[..., 0] + 1j * uv[..., 1]
         along = (z[:, 1] - z[:, 0]) / length
         across = (z[:, 2] - z[:, 0] - along * x) / height
@@ -60,7 +59,7 @@ def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDisto
     """The measures of each triangle.  Arguments and errors as in `singular_values`."""
     largest, smallest = singular_values(surface, corner_uv)
     measured = ~np.isnan(largest)
-    areas = np.where(measured, _doubled_areas(surface), 0.0)
+    areas = np.where(measured, triangle_areas(surface), 0.0)
     scaled = largest * smallest
     with np.errstate(divide="ignore", invalid="ignore"):
         # Texture area per unit of surface area, over the whole map.
@@ -74,13 +73,33 @@ def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDisto
 
 
 def triangle_areas(surface: Surface) -> FloatArray:
-    """(m,) area of each triangle on the surface."""
-    return _doubled_areas(surface) / 2
+    """(m,) area of each triangle in the surface's metric."""
+    return _first_sides(surface)[2] / 2
 
 
-def _doubled_areas(surface: Surface) -> NDArray[np.float64]:
+def _first_sides(surface: Surface) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(m,) of each triangle in the surface's metric: the length of its first side, the product of that with the side
+    to the last corner, and the doubled area between them."""
     place = surface.positions[surface.triangles]
-    return np.linalg.norm(np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]), axis=1)
+    if surface.scale is None:
+        first, second = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+        return np.linalg.norm(first, axis=1), (first * second).sum(axis=1), np.linalg.norm(np.cross(first, second), axis=1)
+    sides = side_lengths(surface)
+    squares = sides * sides
+    c, b, a = np.sort(sides, axis=1).T
+    # Kahan's stable formula.
+    product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
+    return sides[:, 0], (squares[:, 0] + squares[:, 2] - squares[:, 1]) / 2, np.sqrt(np.maximum(product, 0.0)) / 2
+
+
+def side_lengths(surface: Surface) -> FloatArray:
+    """(m, 3) in the surface's metric, that from each corner to the next."""
+    place = surface.positions[surface.triangles]
+    lengths = np.linalg.norm(np.roll(place, -1, axis=1) - place, axis=2)
+    if surface.scale is None:
+        return lengths
+    scale = surface.scale[surface.triangles]
+    return lengths * (scale + np.roll(scale, -1, axis=1)) / 2
 
 
 def uv_area(corner_uv: FloatArray) -> float:

@@ -137,8 +137,10 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
 
 
 def _of_unit_size(surface: Surface) -> tuple[float, Surface]:
-    """The largest coordinate and the surface in this unit, whose areas can be computed whatever its size is."""
+    """The largest coordinate and the surface in this unit, whose areas can be computed whatever its size is. Texels are
+    counted in space, whatever the scale of the metric."""
     arguments.require_type("surface", surface, Surface)
+    surface = replace(surface, scale=None)
     unit = float(np.abs(surface.positions).max(initial=0.0))
     return (unit, replace(surface, positions=surface.positions / unit)) if 0 < unit < math.inf else (1.0, surface)
 

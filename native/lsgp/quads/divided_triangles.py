@@ -12,6 +12,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
 from ..errors import Elements
 from ..surface import Surface
+from ..triangles import side_lengths
 
 # Needles are divided along their length into as many triangles as that takes; no more than this in all, or as many
 # times the surface's own.
@@ -50,12 +51,11 @@ class DividedSurface:
 
 
 def divide_long_edges(source: Surface, longest: float) -> DividedSurface:
-    """Divide edges longer than this, and others where triangles would get smaller angles otherwise: the longest edge of
+    """Divide edges longer than this in the surface's metric, and others where triangles would get smaller angles otherwise: the longest edge of
     every triangle that is divided is (Rivara 1984). On surfaces of many needles longer edges may stay."""
     count = len(source.triangles)
     most = max(_MOST_TRIANGLES, _MOST_TIMES * count)
-    corners = source.positions[source.triangles]
-    sizes = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    sizes = side_lengths(source).max(axis=1)
     longest = max(longest, float(sizes.sum()) / most)
     while (found := _divided(source, longest, most)) is None:
         longest *= _COARSER
@@ -65,6 +65,7 @@ def divide_long_edges(source: Surface, longest: float) -> DividedSurface:
 def _divided(source: Surface, longest: float, most: int) -> DividedSurface | None:
     """None where that would be more than so many triangles."""
     positions, triangles = source.positions, source.triangles.astype(np.int64)
+    scale = np.ones(len(positions)) if source.scale is None else source.scale
     within = np.arange(len(triangles))
     corners = np.tile(np.eye(3), (len(triangles), 1, 1))
     ends = np.repeat(np.arange(len(positions)), 2).reshape(-1, 2)
@@ -72,7 +73,7 @@ def _divided(source: Surface, longest: float, most: int) -> DividedSurface | Non
         ahead = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
         edges, edge = np.unique(np.sort(ahead, axis=2).reshape(-1, 2), axis=0, return_inverse=True)
         edge = edge.reshape(-1, 3)
-        lengths = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1)
+        lengths = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1) * scale[edges].mean(axis=1)
         # Of edges that are equally long the first is divided, so that both triangles there choose the same one.
         rank = np.empty(len(edges), np.int64)
         rank[np.lexsort((-np.arange(len(edges)), lengths))] = np.arange(len(edges))
@@ -91,6 +92,7 @@ def _divided(source: Surface, longest: float, most: int) -> DividedSurface | Non
             return None
         middle = np.where(is_divided, len(positions) + np.cumsum(is_divided) - 1, -1)
         positions = np.concatenate([positions, (positions[edges[is_divided, 0]] + positions[edges[is_divided, 1]]) / 2])
+        scale = np.concatenate([scale, scale[edges[is_divided]].mean(axis=1)])
         ends = np.concatenate([ends, _edges_of(ends, edges[is_divided])])
         parts = _Parts(triangles, middle[edge], within, corners, first)
         triangles, within, corners = parts.halves()
@@ -112,6 +114,7 @@ def _divided(source: Surface, longest: float, most: int) -> DividedSurface | Non
         borders=None,
         directions=None if source.directions is None else source.directions[within],
         features=_divided_pairs(source.features, ends, edges),
+        scale=None if source.scale is None else scale,
     )
     return DividedSurface(surface, source, within.astype(np.int32), corners, ends.astype(np.int32))
 

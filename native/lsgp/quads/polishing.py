@@ -32,27 +32,31 @@ _CORNER, _SHORT = math.radians(20), 0.7
 _ZERO = 1e-9
 
 
-def polished(surface: Surface, mesh: QuadMesh, features: IndexArray, progress: Progress | None = None) -> QuadMesh:
+def polished(
+    surface: Surface, mesh: QuadMesh, features: IndexArray, scale: FloatArray, progress: Progress | None = None
+) -> QuadMesh:
     """The same mesh with other positions of its vertices, but for irregular ones and those on features.
 
-    surface: the one that it is on. features: (k, 2), edges of it, which no vertex crosses. No quad gets a corner more
+    surface: the one that it is on. features: (k, 2), edges of it, which no vertex crosses. scale: (v,) the factor by
+    which lengths count at each vertex of the mesh, for sizes to be equal. No quad gets a corner more
     than 20 degrees off a right angle, or an edge of less than 0.7 of the mean one, unless it had a worse one before.
     Raises Cancelled.
     """
     walls = edge_keys(*features.T, len(surface.positions))
     held = _is_on(walls, surface, mesh)
     held[mesh.irregular] = True
+    of_quads = scale[mesh.quads].mean(axis=1)
     walk, places = SurfaceWalk(surface, walls), (mesh.positions, mesh.triangles.astype(np.int64), mesh.weights)
     for attempt in range(_ATTEMPTS):
         positions, triangles, weights = places
         for done in range(_ROUNDS):
             if progress is not None:
                 progress((attempt + done / _ROUNDS) / _ATTEMPTS)
-            motion = _toward_squares(positions, mesh.quads) - positions
+            motion = _toward_squares(positions, mesh.quads, of_quads) - positions
             motion[held] = 0.0
             triangles, weights = walk.move(triangles, weights, motion)
             positions = walk.positions(triangles, weights)
-        harmed = ~_without_harm(mesh, positions)
+        harmed = ~_without_harm(mesh, positions, of_quads)
         if not (harmed & ~held).any():
             break
         # The others adapt to them then.
@@ -82,8 +86,8 @@ def _is_on(walls: NDArray[np.int64], surface: Surface, mesh: QuadMesh) -> NDArra
     return on
 
 
-def _toward_squares(positions: FloatArray, quads: IndexArray) -> FloatArray:
-    """(v, 3) where the squares nearest to the quads around each vertex have it, on average."""
+def _toward_squares(positions: FloatArray, quads: IndexArray, scale: FloatArray) -> FloatArray:
+    """(v, 3) where the squares nearest to the quads around each vertex have it, on average.  scale: (q,)."""
     corners = positions[quads]
     middle = corners.mean(axis=1)
     first, second = (corners[:, 0] - corners[:, 2]) / 2, (corners[:, 1] - corners[:, 3]) / 2
@@ -94,7 +98,8 @@ def _toward_squares(positions: FloatArray, quads: IndexArray) -> FloatArray:
     half = (first + np.cross(second, normal)) / 2
     length = np.linalg.norm(half, axis=1, keepdims=True)
     # Of a square, `area` is the square of half its diagonal.
-    wanted = (1 - _TO_MEAN_SIZE) * length + _TO_MEAN_SIZE * math.sqrt(area.mean())
+    of_mean_size = math.sqrt((area * scale[:, np.newaxis] ** 2).mean()) / scale[:, np.newaxis]
+    wanted = (1 - _TO_MEAN_SIZE) * length + _TO_MEAN_SIZE * of_mean_size
     half *= np.divide(wanted, length, out=np.ones_like(length), where=length > 0)
     other = np.cross(normal, half)
     goals = np.stack([middle + half, middle + other, middle - half, middle - other], axis=1)
@@ -103,10 +108,11 @@ def _toward_squares(positions: FloatArray, quads: IndexArray) -> FloatArray:
     return out / np.bincount(quads.ravel(), minlength=len(positions))[:, np.newaxis]
 
 
-def _without_harm(mesh: QuadMesh, positions: FloatArray) -> NDArray[np.bool_]:
-    """(v,) which vertices move there: as many as can without worse corners or shorter edges of bad quads."""
+def _without_harm(mesh: QuadMesh, positions: FloatArray, scale: FloatArray) -> NDArray[np.bool_]:
+    """(v,) which vertices move there: as many as can without worse corners or shorter edges of bad quads.  scale: (q,).
+    """
     worst, shortest = _corners_and_edges(mesh.positions, mesh.quads)
-    most, least = np.maximum(worst, _CORNER), np.minimum(shortest, _SHORT * float(shortest.mean()))
+    most, least = np.maximum(worst, _CORNER), np.minimum(shortest, _SHORT * float((shortest * scale).mean()) / scale)
     moves = np.ones(len(positions), bool)
     while True:
         now, length = _corners_and_edges(np.where(moves[:, np.newaxis], positions, mesh.positions), mesh.quads)

@@ -28,6 +28,7 @@ from ..results import Result
 from ..stitching import is_collapsed
 from ..surface import Surface, surface_arrays
 from ..triangles import triangle_areas, uv_area
+from .density import at_density, even_density, require_density
 from .divided_triangles import DividedSurface, divide_long_edges
 from .polishing import polished
 from .quad_mesh import QuadMesh, extract_quads
@@ -76,14 +77,17 @@ class QuadRemesh(EqualByContent, ShortRepr):
         `seamless.tile_size` is the side of a quad whose row is not divided.
     warnings: findings that leave the mesh usable, including those of the placement of cones and of the layout.
     surface: what the layout is of: the given surface without triangles that name a vertex twice, or where quads follow
-        creases and its triangles are large, the same with long edges divided. New vertices follow the given ones. The
-        mesh and the warnings refer to the given surface.
+        creases or a density and its triangles are large, the same with long edges divided. New vertices follow the
+        given ones. Its `scale` is the metric in which quads are equal. The mesh and the warnings refer to the given
+        surface.
+    density: (v,) that of quads at each vertex of the mesh, as it was used; None if none was given.
     """
 
     mesh: QuadMesh
     layout: Result
     warnings: list[Finding]
     surface: Surface
+    density: FloatArray | None = None
 
     def feature_distances(self) -> FloatArray:
         """(k,) of the irregular vertices, `layout.cones`, from the nearest feature, in sides of a quad: marked edges,
@@ -92,8 +96,9 @@ class QuadRemesh(EqualByContent, ShortRepr):
         if not len(edges):
             return np.empty(0)
         begin, end = self.surface.positions[edges].transpose(1, 0, 2)
-        nearest = [_distance(point, begin, end) for point in self.surface.positions[self.layout.cones]]
-        return np.array(nearest) / self.layout.seamless.tile_size
+        nearest = np.array([_distance(point, begin, end) for point in self.surface.positions[self.layout.cones]])
+        scale = 1.0 if self.surface.scale is None else self.surface.scale[self.layout.cones]
+        return nearest * scale / self.layout.seamless.tile_size
 
 
 def _distance(point: FloatArray, begin: FloatArray, end: FloatArray) -> float:
@@ -114,6 +119,7 @@ def remesh_to_quads(
     options: Options | None = None,
     count: int | None = None,
     polish: bool = False,
+    density: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> QuadRemesh:
     """Cover a closed surface with quads whose irregular vertices are the cones.
@@ -131,6 +137,9 @@ def remesh_to_quads(
         surfaces become rows of edges, and automatic cones are chosen for that.
     polish: whether vertices, but for irregular ones and those on features, then move over the surface, so that edges
         are more equal, with corners about as square as before; no quad gets a bad corner that had none.
+    density: (n,) the number of quads per area at each vertex, relative to the others, 1e-12 to 1e12: four times as many
+        are half as long. `size` is the side of a quad where the density is 1. Where triangles are too large for it to
+        fall as fast as given it is raised (DENSITY_RAISED).
     If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
     progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
     work is done; COMPONENT_SKIPPED if a component has no layout; TOO_MANY_QUADS.
@@ -142,12 +151,14 @@ def remesh_to_quads(
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
-    asked = (GivenCones.of(cones, angles, count), target, size, _options(options), arguments.flag("polish", polish))
+    given = GivenCones.of(cones, angles, count)
+    asked = _Asked(given, target, size, _options(options), arguments.flag("polish", polish))
+    wanted = None if density is None else require_density(density, len(surface.positions))
     if not (surface.may_collapse and is_collapsed(surface.triangles).any()):
-        return _remeshed(surface, *asked, progress)
+        return _with_density(surface, wanted, asked, progress)
     whole = np.flatnonzero(~is_collapsed(surface.triangles)).astype(np.int32)
     try:
-        remesh = _remeshed(surface_of_triangles(surface, whole), *asked, progress)
+        remesh = _with_density(surface_of_triangles(surface, whole), wanted, asked, progress)
     except LsgpError as error:
         error.elements = _among_all(error.elements, whole)
         raise
@@ -161,17 +172,43 @@ def _among_all(elements: Elements, whole: IndexArray) -> Elements:
     return Elements("triangles", whole[elements.indices]) if elements.kind == "triangles" else elements
 
 
-def _remeshed(
-    surface: Surface,
-    given: GivenCones,
-    target: int | None,
-    size: float | None,
-    chosen: Options,
-    polish: bool,
-    progress: Progress | None,
-) -> QuadRemesh:
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """The arguments of `remesh_to_quads` but for the surface and the density."""
+
+    given: GivenCones
+    target: int | None
+    size: float | None
+    options: Options
+    polish: bool
+
+
+def _with_density(surface: Surface, density: FloatArray | None, asked: _Asked, progress: Progress | None) -> QuadRemesh:
     """Of a surface without seams whose triangles have three vertices each."""
     _lsgp.require_closed(surface_arrays(surface))
+    if density is None:
+        return _remeshed(surface, asked, progress)
+    even = even_density(surface, density)
+    if even is not None:
+        if asked.size is not None:
+            asked = replace(asked, size=arguments.positive("size", asked.size) / math.sqrt(even))
+        remesh = _remeshed(surface, asked, progress)
+        return replace(remesh, density=np.full(len(remesh.mesh.positions), even))
+    finer, findings = at_density(surface, density, _LONGEST_EDGE)
+    try:
+        remesh = _remeshed(finer.surface, asked, progress)
+    except LsgpError as error:
+        error.elements = finer.elements(error.elements)
+        raise
+    warnings = [replace(finding, elements=finer.elements(finding.elements)) for finding in remesh.warnings]
+    mesh = _undivided(remesh.mesh, finer)
+    used = (_scale_at(finer.surface, remesh.mesh) / _scale_at(surface, mesh)) ** 2
+    return QuadRemesh(mesh, remesh.layout, [*warnings, *findings], remesh.surface, used)
+
+
+def _remeshed(surface: Surface, asked: _Asked, progress: Progress | None) -> QuadRemesh:
+    """Of a closed surface."""
+    given, target, size, chosen, polish = asked.given, asked.target, asked.size, asked.options, asked.polish
     side = _side(surface, target, size)
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
@@ -187,12 +224,12 @@ def _remeshed(
         gained = None if _is_close(layout) else or_none(lambda: _gained(surface, target, chosen, layout, on_finer))
         if gained is not None:
             finer, layouts, layout = gained
-    asked = 0.0 if side is None else _area(surface) / side**2
-    mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, _EXTRACTED if polish else 1.0))
+    count = 0.0 if side is None else _area(surface) / side**2
+    mesh, layout = layouts.extracted(layout, count, share_of(progress, _LAID_OUT, _EXTRACTED if polish else 1.0))
     if polish:
         opened = surface if finer is None else finer.surface
         features = opened.features if len(opened.features) else layout.seamless.creases
-        mesh = polished(opened, mesh, features, share_of(progress, _EXTRACTED, 1.0))
+        mesh = polished(opened, mesh, features, _scale_at(opened, mesh), share_of(progress, _EXTRACTED, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     if finer is None:
         return QuadRemesh(mesh, layout, warnings, surface)
@@ -446,6 +483,13 @@ def _gained(
         return None
     has_many = _quad_count(layout) > _MORE_QUADS * max(_quad_count(before), target or 0)
     return None if has_many else (finer, layouts, layout)
+
+
+def _scale_at(surface: Surface, mesh: QuadMesh) -> FloatArray:
+    """(v,) the scale of the surface's metric at the vertices of a mesh on it."""
+    if surface.scale is None:
+        return np.ones(len(mesh.positions))
+    return (mesh.weights * surface.scale[surface.triangles[mesh.triangles]]).sum(axis=1)
 
 
 def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
