@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .base import arguments
 from .base.arguments import FloatArray
@@ -31,8 +31,8 @@ class TriangleDistortion(EqualByContent, ShortRepr):
 
 
 def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """(m,) sigma_1 >= sigma_2 >= 0 of each triangle's linear map from its plane, with the lengths of `Surface.scale`, to
-    the texture.
+    """(m,) sigma_1 >= sigma_2 >= 0 of each triangle's linear map from its plane to the texture, with lengths as of
+    `Surface.scale`.
 
     corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
     """
@@ -83,7 +83,11 @@ def _first_sides(surface: Surface) -> tuple[FloatArray, FloatArray, FloatArray]:
     place = surface.positions[surface.triangles]
     if surface.scale is None:
         first, second = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
-        return np.linalg.norm(first, axis=1), (first * second).sum(axis=1), np.linalg.norm(np.cross(first, second), axis=1)
+        return (
+            np.linalg.norm(first, axis=1),
+            (first * second).sum(axis=1),
+            np.linalg.norm(np.cross(first, second), axis=1),
+        )
     sides = side_lengths(surface)
     squares = sides * sides
     c, b, a = np.sort(sides, axis=1).T

@@ -264,7 +264,7 @@ def _quads(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     with ProgressLine(sys.stderr) as progress:
         remesh = quads_file(args, run, progress)
     _warn(remesh.warnings, run.triangulation)
-    quality = quad_quality(remesh.mesh.positions, remesh.mesh.quads)
+    quality = quad_quality(remesh.mesh.positions, remesh.mesh.quads, remesh.density)
     return reports.quads_report(remesh, quality, run), summary_of_quads(args.output, remesh, quality)
 
 

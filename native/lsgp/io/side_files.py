@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files beside a mesh on the command line: cones and their angles, seam edges, directions, importance, cut
-costs."""
+"""The files beside a mesh on the command line: cones and their angles, seam edges, directions, importance, density,
+cut costs."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def load_cut_costs(path: Path) -> CutCostFile:
     Raises OSError, UsageError, InputError.
     """
     data = read_regular(path)
-    if data.lstrip()[:1] in (b"[", b"{"):
+    if _is_json(data):
         data = _as_lines(_parsed(data, path), path)
     rows = Rows.split(data)
     try:
@@ -145,16 +145,76 @@ def load_importance(path: Path) -> NDArray[np.float64]:
     """The numbers of a file, a JSON list or text with white space between them.  Raises OSError, UsageError,
     InputError."""
     data = read_regular(path)
-    if data.lstrip()[:1] in (b"[", b"{"):
-        content = _parsed(data, path)
-        if not _is_list_of(content, _is_number):
-            raise _unlike(path, "[number, ...], one for each vertex")
-        return np.array([_as_float(value) for value in content], np.float64)
+    if not _is_json(data):
+        return _numbers(data, path, "importance")
+    content = _parsed(data, path)
+    if not _is_list_of(content, _is_number):
+        raise _unlike(path, "[number, ...], one for each vertex")
+    return _floats(content)
+
+
+@dataclass(frozen=True, slots=True)
+class DensityFile:
+    """The content of a file of densities: `values` of all vertices, or of these `vertices`, the others having 1."""
+
+    path: Path
+    vertices: NDArray[np.int32] | None
+    values: NDArray[np.float64]
+
+    def at_vertices(self, vertex_count: int) -> NDArray[np.float64]:
+        """(n,) that of each vertex, of several values the last one.  Raises InputError."""
+        if self.vertices is None:
+            if len(self.values) != vertex_count:
+                raise InputError(
+                    "WRONG_PARAMETER",
+                    f"'{self.path}' has {len(self.values)} numbers for {vertex_count} vertices. Give one for each.",
+                )
+            return self.values
+        outside = self.vertices[(self.vertices < 0) | (self.vertices >= vertex_count)]
+        if len(outside):
+            raise InputError(
+                "INDEX_OUT_OF_RANGE",
+                f"'{self.path}' has a density at vertex {outside[0]}, but the mesh has {vertex_count} vertices. Use "
+                "vertices of the file, counted from 0.",
+            )
+        density = np.ones(vertex_count)
+        for vertex, value in zip(self.vertices.tolist(), self.values.tolist(), strict=True):
+            density[vertex] = value
+        return density
+
+
+def load_density(path: Path) -> DensityFile:
+    """A file of densities: one number for each vertex, as a JSON list or as text with white space between them, or a
+    JSON list of vertices and their numbers.  Raises OSError, UsageError, InputError."""
+    data = read_regular(path)
+    if not _is_json(data):
+        return DensityFile(path, None, _numbers(data, path, "density"))
+    content = _parsed(data, path)
+    if content and _is_list_of(content, _is_number):
+        return DensityFile(path, None, _floats(content))
+    if not _is_list_of(content, lambda row: _is_list_of(row, _is_number) and len(row) == 2 and _is_integer(row[0])):
+        raise _unlike(
+            path, "[number, ...], one for each vertex, or [[vertex, number], ...] with vertices counted from 0"
+        )
+    vertices = _indices([row[0] for row in content], "INDEX_OUT_OF_RANGE", "vertex of a density")
+    return DensityFile(path, vertices, _floats([row[1] for row in content]))
+
+
+def _is_json(data: bytes) -> bool:
+    return data.lstrip()[:1] in (b"[", b"{")
+
+
+def _numbers(data: bytes, path: Path, what: str) -> NDArray[np.float64]:
+    """Those of a text, with white space between them.  what: of vertices they are.  Raises InputError."""
     rows = Rows.split(data)
     try:
         return rows.floats(rows.tokens())
     except InputError as error:
-        raise InputError(error.code, f"'{path}' does not hold the importance of vertices. {error.message}") from error
+        raise InputError(error.code, f"'{path}' does not hold the {what} of vertices. {error.message}") from error
+
+
+def _floats(values: list[float]) -> NDArray[np.float64]:
+    return np.array([_as_float(value) for value in values], np.float64)
 
 
 def _parsed(data: bytes, path: Path) -> Any:

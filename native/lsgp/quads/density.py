@@ -24,7 +24,7 @@ from .divided_triangles import DividedSurface, divide_long_edges
 
 # Scales of lengths are those of `Surface.scale`.
 _LEAST, _MOST = 1e-12, 1e12
-# How much of what two sides of a triangle are longer than the third one has to be left, and how close to that is enough.
+# How much of what two sides of a triangle are longer than the third one is to be left, and how much is enough.
 _KEPT, _ENOUGH = 0.5, 0.45
 # Scales are raised this much beyond what a triangle needs, so that this ends.
 _BEYOND, _ROUNDING = 1.01, 1e-12
@@ -81,7 +81,9 @@ def at_density(surface: Surface, density: FloatArray, longest: float) -> tuple[D
 
 def _area_about(surface: Surface) -> float:
     """In the metric, whose triangles may be impossible yet."""
-    return float((triangle_areas(replace(surface, scale=None)) * surface.scale[surface.triangles].mean(axis=1) ** 2).sum())
+    return float(
+        (triangle_areas(replace(surface, scale=None)) * surface.scale[surface.triangles].mean(axis=1) ** 2).sum()
+    )
 
 
 def _raised(surface: Surface) -> FloatArray:

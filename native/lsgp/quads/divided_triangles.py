@@ -51,8 +51,9 @@ class DividedSurface:
 
 
 def divide_long_edges(source: Surface, longest: float) -> DividedSurface:
-    """Divide edges longer than this in the surface's metric, and others where triangles would get smaller angles otherwise: the longest edge of
-    every triangle that is divided is (Rivara 1984). On surfaces of many needles longer edges may stay."""
+    """Divide edges longer than this in the surface's metric, and others where triangles would get smaller angles
+    otherwise: the longest edge of every triangle that is divided is (Rivara 1984). On surfaces of many needles longer
+    edges may stay."""
     count = len(source.triangles)
     most = max(_MOST_TRIANGLES, _MOST_TIMES * count)
     sizes = side_lengths(source).max(axis=1)

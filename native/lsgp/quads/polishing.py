@@ -87,7 +87,8 @@ def _is_on(walls: NDArray[np.int64], surface: Surface, mesh: QuadMesh) -> NDArra
 
 
 def _toward_squares(positions: FloatArray, quads: IndexArray, scale: FloatArray) -> FloatArray:
-    """(v, 3) where the squares nearest to the quads around each vertex have it, on average.  scale: (q,)."""
+    """(v, 3) where the squares nearest to the quads around each vertex have it, on average.  scale: (q,), as
+    of `_without_harm`."""
     corners = positions[quads]
     middle = corners.mean(axis=1)
     first, second = (corners[:, 0] - corners[:, 2]) / 2, (corners[:, 1] - corners[:, 3]) / 2
@@ -109,7 +110,9 @@ def _toward_squares(positions: FloatArray, quads: IndexArray, scale: FloatArray)
 
 
 def _without_harm(mesh: QuadMesh, positions: FloatArray, scale: FloatArray) -> NDArray[np.bool_]:
-    """(v,) which vertices move there: as many as can without worse corners or shorter edges of bad quads.  scale: (q,).
+    """(v,) which vertices move there: as many as can without worse corners or shorter edges of bad quads.
+
+    scale: (q,) by which lengths count at each quad.
     """
     worst, shortest = _corners_and_edges(mesh.positions, mesh.quads)
     most, least = np.maximum(worst, _CORNER), np.minimum(shortest, _SHORT * float((shortest * scale).mean()) / scale)

@@ -17,6 +17,7 @@ from ..base.progress import Progress
 from ..base.short_repr import ShortRepr
 from ..errors import InputError
 from ..surface import Surface, surface_arrays
+from .density import require_density
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -83,13 +84,18 @@ def extract_quads(
     return QuadMesh(**_lsgp.extract_quads(arrays, uv, arguments.positive("cell", cell), progress))
 
 
-def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
-    """Measure quads.  positions: (v, 3). quads: (q, 4) vertices, at least one.  Raises InputError."""
+def quad_quality(positions: ArrayLike, quads: ArrayLike, density: ArrayLike | None = None) -> QuadQuality:
+    """Measure quads.  positions: (v, 3). quads: (q, 4) vertices, at least one.
+
+    density: (v,) that of quads at each vertex, such as `QuadRemesh.density`: lengths of edges count times its square
+        root, the mean of that at their ends; None: 1.  Raises InputError.
+    """
     positions = arguments.float_rows("positions", positions, 3)
     quads = arguments.index_rows("quads", quads, 4)
     if not len(quads):
         raise InputError("EMPTY_MESH", "There are no quads to measure. Pass those of a mesh.")
     arguments.require_indices("quads", quads, len(positions))
+    wanted = None if density is None else require_density(density, len(positions))
     size = np.abs(positions).max()
     if not (math.isfinite(size) and size > 0):
         raise InputError("NON_FINITE_POSITION", "Positions are not finite, or all are 0. Pass those of a mesh.")
@@ -100,6 +106,9 @@ def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
     errors = np.abs(np.arctan2(doubled_area, (ahead * back).sum(axis=2)) - math.pi / 2)
     # A mesh's edge is in two quads, so that all count alike.
     lengths = np.linalg.norm(ahead, axis=2)
+    if wanted is not None:
+        scale = np.sqrt(wanted)[quads]
+        lengths *= (scale + np.roll(scale, -1, axis=1)) / 2
     mean = lengths.mean()
     if mean == 0:
         raise InputError("DEGENERATE_MESH", "All quads are points. Pass those of a mesh.")

@@ -80,7 +80,8 @@ class QuadRemesh(EqualByContent, ShortRepr):
         creases or a density and its triangles are large, the same with long edges divided. New vertices follow the
         given ones. Its `scale` is the metric in which quads are equal. The mesh and the warnings refer to the given
         surface.
-    density: (v,) that of quads at each vertex of the mesh, as it was used; None if none was given.
+    density: (v,) that of quads at each vertex of the mesh, as it was used; None if it is the same
+        everywhere.
     """
 
     mesh: QuadMesh
@@ -192,8 +193,7 @@ def _with_density(surface: Surface, density: FloatArray | None, asked: _Asked, p
     if even is not None:
         if asked.size is not None:
             asked = replace(asked, size=arguments.positive("size", asked.size) / math.sqrt(even))
-        remesh = _remeshed(surface, asked, progress)
-        return replace(remesh, density=np.full(len(remesh.mesh.positions), even))
+        return _remeshed(surface, asked, progress)
     finer, findings = at_density(surface, density, _LONGEST_EDGE)
     try:
         remesh = _remeshed(finer.surface, asked, progress)

@@ -17,7 +17,7 @@ from ..io.mesh_formats import OBJ, output_format
 from ..io.mesh_obj import format_obj
 from ..io.polygons import PolygonMesh
 from ..io.safe_files import is_standard_stream
-from ..io.side_files import UsageError, cones_in, load_json
+from ..io.side_files import UsageError, cones_in, load_density, load_json
 from ..io.whole_files import write_output
 from ..options import Options, Seamless
 from ..quads.quad_mesh import QuadQuality
@@ -49,6 +49,13 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         "tenth in distortion)",
     )
     number.add_argument("--size", metavar="X", type=float, help="side of a quad on the surface, in its unit")
+    quads.add_argument(
+        "--density",
+        metavar="FILE",
+        help="the number of quads per area at each vertex, relative to the others: a JSON list of one number for each "
+        "vertex, [[vertex, number], ...] with 1 elsewhere, or numbers as text; 4 makes quads half as long. --size is "
+        "the side where it is 1",
+    )
     add_cones_option(quads)
     add_mode_option(quads)
     add_stretch_option(quads)
@@ -98,6 +105,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     path = cones_file(args)
     cones_json = None if path is None else load_json(path)
     directions_json = load_directions(args)
+    density = None if args.density is None else load_density(Path(args.density))
     file = read_file(args.input, run, args.format, stitch=stitches(args))
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
     surface, of_faces = file.surface(), directions_of_faces(args, directions_json, file)
@@ -112,6 +120,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
             options=options,
             count=cone_count(args),
             polish=args.polish,
+            density=None if density is None else density.at_vertices(len(file.mesh.positions)),
             progress=progress,
         )
     mesh = PolygonMesh(remesh.mesh.positions, remesh.mesh.quads.ravel(), np.full(len(remesh.mesh.quads), 4, np.int64))
@@ -126,13 +135,14 @@ def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:
     irregular = Counter(mesh.valences[mesh.irregular].tolist())
     kinds = ", ".join(f"{irregular[valence]} of valence {valence}" for valence in sorted(irregular))
     distances = remesh.feature_distances()
+    where, at_density = ("", "") if remesh.density is None else (" where the density is 1", " by the density")
     angle, worst = math.degrees(quality.angle_error), math.degrees(quality.worst_angle_error)
     return "\n".join(
         [
-            f"{output}: {len(mesh.quads)} quads of side {remesh.layout.seamless.tile_size:.4g}, "
+            f"{output}: {len(mesh.quads)} quads of side {remesh.layout.seamless.tile_size:.4g}{where}, "
             f"{len(mesh.positions)} vertices, {len(mesh.irregular)} irregular{f' ({kinds})' if kinds else ''}",
             f"corners off 90 degrees: {angle:.1f} on average, {worst:.1f} at most",
-            f"edges: {quality.edge_deviation:.1%} standard deviation, from {quality.shortest_edge:.2f} to "
+            f"edges{at_density}: {quality.edge_deviation:.1%} standard deviation, from {quality.shortest_edge:.2f} to "
             f"{quality.longest_edge:.2f} of the mean",
             *_place_of_irregular(distances),
         ]
