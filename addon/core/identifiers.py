@@ -22,6 +22,9 @@ SEAM_COST_GROUP = "uv_seam_cost"
 IMPORTANCE_GROUP = "uv_importance"
 """Default vertex group of importance weights; Blender's own name for it."""
 
+QUAD_DENSITY_GROUP = "uv_quad_density"
+"""Default vertex group of the density of quads: their sides are halved, and halved again, where its weight is 1."""
+
 LOG_SCALE_ATTRIBUTE = "uv_cone_log_scale"
 """Float attribute on points: predicted logarithm of the length scale, with mean 0 on every connected part."""
 

@@ -37,7 +37,7 @@ class Region:
     drawn_up: (m, 3) float64, the drawn upward direction of the texture, 0 for none; None where nothing is drawn.
     cut_paint: (n,) float64, from 0 where cuts should run to 1 where they should not; None without such a vertex group.
     axes: (3, 3), the rotation from the region's shape to the world: a direction in the world, times it, is one here.
-    weights: (n,) float64, importance weights; None without such a vertex group, or where they were not asked for.
+    weights: (n,) float64, those of importance or of density that were asked for; None without such a vertex group.
     image_aspect: width over height of the image in the mesh's material; 1 where there is none.
     object_scale: by how much the object's transform scales lengths, on the average; 0 where it leaves none.
     density_weight: how many times the texel density of other objects this one is to have.

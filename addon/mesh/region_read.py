@@ -44,7 +44,7 @@ class Faces(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Groups:
-    """The vertex groups to read: that of the cones and that of importance weights; None for neither."""
+    """The vertex groups to read: that of the cones and that of other weights; None for neither."""
 
     cones: str | None = None
     weights: str | None = None

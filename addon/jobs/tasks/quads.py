@@ -17,10 +17,15 @@ from .solving import solve_all
 
 if TYPE_CHECKING:
     import lsgp
+    import numpy as np
+    from numpy.typing import NDArray
 
     from ...core.cone_angles import ConeAngles
     from ...core.region import Region
     from .solving import Progress
+
+# How many times as many quads there are, on the same area, where the weight of density is 1 as where it is 0.
+MOST_DENSITY = 16.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +48,7 @@ class QuadTask:
     """Everything that the quads of one region are computed from.
 
     cones: those of the region with their angles. target, size: as in the settings, but for the size of the mesh.
+    density: (n,) that of quads at each vertex; None where it is the same everywhere.
     """
 
     region: Region
@@ -51,6 +57,7 @@ class QuadTask:
     target: int | None
     size: float | None
     polish: bool
+    density: NDArray[np.float64] | None
 
     @property
     def threads(self) -> int:
@@ -70,7 +77,8 @@ def quad_task(region: Region, settings: QuadSettings) -> QuadTask:
     # Quads run on across seams, which therefore do not matter to the angles of cones either.
     region = replace(region, surface=replace(region.surface, seams=None))
     region = with_directions(region, settings.direction)
-    return QuadTask(region, region.own_cones, settings.options, settings.target, size, settings.polish)
+    density = None if region.weights is None else MOST_DENSITY**region.weights
+    return QuadTask(region, region.own_cones, settings.options, settings.target, size, settings.polish, density)
 
 
 def remesh_all(tasks: Sequence[QuadTask], progress: Progress | None = None) -> list[lsgp.QuadRemesh | Exception]:
@@ -90,5 +98,6 @@ def _remesh(task: QuadTask, progress: Progress | None) -> lsgp.QuadRemesh:
         size=task.size,
         options=task.options,
         polish=task.polish,
+        density=task.density,
         progress=progress,
     )

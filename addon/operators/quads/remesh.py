@@ -104,6 +104,12 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         description="What to do if the quads are too large for the cones",
         items=enum_items(COARSE_GRIDS),
     )
+    density_group: bpy.props.StringProperty(
+        name="Density Group",
+        description="Vertex group of the density of quads: where its weight is 1 their sides are a quarter as long as "
+        "where it is 0, on the way between them accordingly. Without it they are alike in size",
+        default=identifiers.QUAD_DENSITY_GROUP,
+    )
     hide_original: bpy.props.BoolProperty(
         name="Hide Original", description="Hide the objects that the quads were made from", default=False
     )
@@ -119,6 +125,10 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         layout.prop(self, "count" if self.amount == "COUNT" else "size")
         for name in ("rows", "follow_creases", "even_sizes", "polish", "coarse_grid", "hide_original"):
             layout.prop(self, name)
+        if context.object is None:
+            layout.prop(self, "density_group")
+        else:
+            layout.prop_search(self, "density_group", context.object, "vertex_groups")
         self.draw_vertex_group(layout, context)
 
     def sources(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], Faces]:
@@ -138,7 +148,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
             direction=chosen_direction(self.rows, tiles=True),
             polish=self.polish,
         )
-        return Groups(self.vertex_group), lambda _obj, region: quad_task(region, settings)
+        return Groups(self.vertex_group, self.density_group), lambda _obj, region: quad_task(region, settings)
 
     @staticmethod
     def solve(tasks: list[QuadTask], progress: Progress | None = None) -> list[lsgp.QuadRemesh | Exception]:

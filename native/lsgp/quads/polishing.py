@@ -19,7 +19,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
 from ..base.progress import Progress
 from ..surface import Surface
-from .quad_mesh import QuadMesh
+from .quad_mesh import QuadMesh, scale_at
 from .surface_walk import SurfaceWalk
 
 _ROUNDS, _ATTEMPTS = 20, 4
@@ -32,20 +32,18 @@ _CORNER, _SHORT = math.radians(20), 0.7
 _ZERO = 1e-9
 
 
-def polished(
-    surface: Surface, mesh: QuadMesh, features: IndexArray, scale: FloatArray, progress: Progress | None = None
-) -> QuadMesh:
+def polished(surface: Surface, mesh: QuadMesh, features: IndexArray, progress: Progress | None = None) -> QuadMesh:
     """The same mesh with other positions of its vertices, but for irregular ones and those on features.
 
-    surface: the one that it is on. features: (k, 2), edges of it, which no vertex crosses. scale: (v,) the factor by
-    which lengths count at each vertex of the mesh, for sizes to be equal. No quad gets a corner more
-    than 20 degrees off a right angle, or an edge of less than 0.7 of the mean one, unless it had a worse one before.
+    surface: the one that it is on, in whose metric sizes are to be equal. features: (k, 2), edges of it, which no
+    vertex crosses. No quad gets a corner more than 20 degrees off a right angle, or an edge of less than 0.7 of the
+    mean one, unless it had a worse one before.
     Raises Cancelled.
     """
     walls = edge_keys(*features.T, len(surface.positions))
     held = _is_on(walls, surface, mesh)
     held[mesh.irregular] = True
-    of_quads = scale[mesh.quads].mean(axis=1)
+    of_quads = scale_at(surface, mesh)[mesh.quads].mean(axis=1)
     walk, places = SurfaceWalk(surface, walls), (mesh.positions, mesh.triangles.astype(np.int64), mesh.weights)
     for attempt in range(_ATTEMPTS):
         positions, triangles, weights = places

@@ -119,3 +119,10 @@ def quad_quality(positions: ArrayLike, quads: ArrayLike, density: ArrayLike | No
         shortest_edge=float(lengths.min() / mean),
         longest_edge=float(lengths.max() / mean),
     )
+
+
+def scale_at(surface: Surface, mesh: QuadMesh) -> FloatArray:
+    """(v,) the scale of the surface's metric at the vertices of a mesh on it."""
+    if surface.scale is None:
+        return np.ones(len(mesh.positions))
+    return (mesh.weights * surface.scale[surface.triangles[mesh.triangles]]).sum(axis=1)

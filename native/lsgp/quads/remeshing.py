@@ -31,7 +31,7 @@ from ..triangles import triangle_areas, uv_area
 from .density import at_density, even_density, require_density
 from .divided_triangles import DividedSurface, divide_long_edges
 from .polishing import polished
-from .quad_mesh import QuadMesh, extract_quads
+from .quad_mesh import QuadMesh, extract_quads, scale_at
 from .quad_rows import QuadLines
 
 # Of the time that a remesh takes, where placing the cones, the layouts and extraction before polishing end.
@@ -202,7 +202,7 @@ def _with_density(surface: Surface, density: FloatArray | None, asked: _Asked, p
         raise
     warnings = [replace(finding, elements=finer.elements(finding.elements)) for finding in remesh.warnings]
     mesh = _undivided(remesh.mesh, finer)
-    used = (_scale_at(finer.surface, remesh.mesh) / _scale_at(surface, mesh)) ** 2
+    used = (scale_at(finer.surface, remesh.mesh) / scale_at(surface, mesh)) ** 2
     return QuadRemesh(mesh, remesh.layout, [*warnings, *findings], remesh.surface, used)
 
 
@@ -229,7 +229,7 @@ def _remeshed(surface: Surface, asked: _Asked, progress: Progress | None) -> Qua
     if polish:
         opened = surface if finer is None else finer.surface
         features = opened.features if len(opened.features) else layout.seamless.creases
-        mesh = polished(opened, mesh, features, _scale_at(opened, mesh), share_of(progress, _EXTRACTED, 1.0))
+        mesh = polished(opened, mesh, features, share_of(progress, _EXTRACTED, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     if finer is None:
         return QuadRemesh(mesh, layout, warnings, surface)
@@ -483,13 +483,6 @@ def _gained(
         return None
     has_many = _quad_count(layout) > _MORE_QUADS * max(_quad_count(before), target or 0)
     return None if has_many else (finer, layouts, layout)
-
-
-def _scale_at(surface: Surface, mesh: QuadMesh) -> FloatArray:
-    """(v,) the scale of the surface's metric at the vertices of a mesh on it."""
-    if surface.scale is None:
-        return np.ones(len(mesh.positions))
-    return (mesh.weights * surface.scale[surface.triangles[mesh.triangles]]).sum(axis=1)
 
 
 def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
