@@ -19,7 +19,7 @@ from ..base.equality import EqualByContent
 from ..base.progress import Progress, share_of
 from ..base.short_repr import ShortRepr
 from ..errors import Elements, Finding, InputError, LsgpError, SolverError
-from ..ledger import surface_of_triangles
+from ..ledger import build_ledger, surface_of_triangles
 from ..options import Options, Seamless
 from ..presets.completed_cones import CompletedCones, GivenCones, complete_cones, or_none
 from ..presets.cone_choices import feature_cones, follows_features
@@ -194,6 +194,7 @@ def _with_density(surface: Surface, density: FloatArray | None, asked: _Asked, p
         if asked.size is not None:
             asked = replace(asked, size=arguments.positive("size", asked.size) / math.sqrt(even))
         return _remeshed(surface, asked, progress)
+    build_ledger(surface, asked.given.cones, asked.given.angles)  # refuses cones that are no vertices of it
     finer, findings = at_density(surface, density, _LONGEST_EDGE)
     try:
         remesh = _remeshed(finer.surface, asked, progress)

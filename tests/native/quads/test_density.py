@@ -12,7 +12,7 @@ from lsgp.quads.density import at_density
 from meshes import Mesh, bumpy_sphere, cube, icosphere, tetrahedron, torus
 from numpy.typing import NDArray
 from oracle import triangle_areas
-from quad_checks import require_closed_quads, require_cones
+from quad_checks import require_closed_quads, vertex_angles
 
 Floats = NDArray[np.float64]
 MESHES = {"sphere": icosphere(3), "torus": torus(36, 18), "bumpy sphere": bumpy_sphere(3)}
@@ -60,6 +60,17 @@ def l2_stretch(surface: lsgp.Surface, uv: Floats) -> float:
     return float(np.sqrt(square * uv_area.sum() / area.sum()))
 
 
+def require_cones_in_place(remesh: lsgp.QuadRemesh) -> None:
+    """Irregular vertices are where the layout's surface has its cones, with as many quads as these have quarters."""
+    turns = np.round(vertex_angles(remesh.surface, remesh.layout.corner_uv)).astype(int)
+    cones = np.flatnonzero(turns != 4)
+    irregular = remesh.mesh.irregular
+    away = remesh.mesh.positions[irregular][:, None] - remesh.surface.positions[cones]
+    at = np.linalg.norm(away, axis=2)
+    assert sorted(at.argmin(axis=1).tolist()) == list(range(len(cones))) and at.min(axis=1).max() < 1e-9
+    assert np.array_equal(turns[cones][at.argmin(axis=1)], remesh.mesh.valences[irregular])
+
+
 @pytest.mark.parametrize("density_of", [ramp, spot])
 @pytest.mark.parametrize("name", MESHES)
 def test_sizes_times_density_vary_by_what_the_layout_stretches(name: str, density_of) -> None:
@@ -69,10 +80,10 @@ def test_sizes_times_density_vary_by_what_the_layout_stretches(name: str, densit
     surface, density = surface_of(mesh), density_of(mesh)
     remesh = lsgp.remesh_to_quads(surface, target=1200, density=density)
     require_closed_quads(mesh, remesh.mesh)
-    require_cones(mesh, remesh.layout.corner_uv, remesh.mesh)
+    require_cones_in_place(remesh)
     stretch = remesh.layout.distortion.l2_stretch
     assert stretch == pytest.approx(l2_stretch(remesh.surface, remesh.layout.corner_uv), rel=1e-9)
-    assert stretch < 1.07
+    assert stretch < 1.08  # cones are placed for 1.05 of a map without a grid
     assert deviation(mesh, density, remesh.mesh) < np.sqrt(stretch**2 - 1) + OF_QUADS
     assert (
         deviation(mesh, density, remesh.mesh)
@@ -178,8 +189,8 @@ def test_a_cliff_is_lowered_to_what_triangles_can_have() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_raised_scales_leave_triangles_possible_and_others_alone(seed: int) -> None:
-    mesh = [icosphere(2), torus(), bumpy_sphere(2), cube(3), tetrahedron()][seed]
+def test_scales_are_raised_only_as_far_as_triangles_need(seed: int) -> None:
+    mesh = [icosphere(2), torus(), bumpy_sphere(2), cube(3), icosphere(1)][seed]
     rng = np.random.default_rng(seed)
     density = np.exp(rng.normal(0, 2, len(mesh.positions)))
     divided, _ = at_density(surface_of(mesh), density, 10.0)  # long enough to divide nothing
@@ -193,21 +204,13 @@ def test_raised_scales_leave_triangles_possible_and_others_alone(seed: int) -> N
         return (sides.sum(axis=1) - 2 * sides.max(axis=1)) / at.mean(axis=1)
 
     even = slack(np.ones(len(given)))
-    assert (slack(scale) > 0.4 * even).all()
     assert (slack(given) < 0).any()
-    enough = np.isin(np.arange(len(given)), mesh.triangles[slack(given) < 0.5 * even])
-    assert (scale > given).sum() > 0 and not (scale > given)[~near(mesh, enough)].any()
-
-
-def near(mesh: Mesh, vertices: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """All vertices that are connected with these by triangles."""
-    reached = vertices.copy()
-    while True:
-        more = reached.copy()
-        more[mesh.triangles[reached[mesh.triangles].any(axis=1)]] = True
-        if (more == reached).all():
-            return reached
-        reached = more
+    assert (slack(scale) > 0.4 * even).all()
+    raised = np.flatnonzero(scale > given)
+    assert 0 < len(raised) < len(given)
+    for vertex in raised:
+        lower = np.where(np.arange(len(scale)) == vertex, 0.97 * scale, scale)
+        assert (slack(lower) < 0.5 * even).any()
 
 
 @pytest.mark.parametrize(
@@ -228,7 +231,7 @@ def test_densities_that_are_none_are_refused(change: tuple[int, float], vertices
 def test_a_density_is_needed_for_each_vertex(density: object) -> None:
     with pytest.raises(lsgp.InputError) as caught:
         lsgp.remesh_to_quads(surface_of(MESHES["sphere"]), target=500, density=density)
-    assert caught.value.code == "WRONG_PARAMETER" and "density" in str(caught.value)
+    assert caught.value.code == "WRONG_SHAPE" and "density" in str(caught.value)
 
 
 def test_open_surfaces_are_refused_with_their_boundary() -> None:
@@ -240,8 +243,7 @@ def test_open_surfaces_are_refused_with_their_boundary() -> None:
     assert set(caught.value.elements.indices.ravel().tolist()) == set(mesh.triangles[0].tolist())
 
 
-def test_elements_are_those_of_the_given_surface_where_it_was_divided() -> None:
-    """Cones that no layout can have are refused by their numbers among the given vertices."""
+def test_cones_are_vertices_of_the_given_surface_not_of_the_divided_one() -> None:
     mesh = tetrahedron()
     with pytest.raises(lsgp.LsgpError) as caught:
         lsgp.remesh_to_quads(surface_of(mesh), [0, 9], target=500, density=[16.0, 1, 1, 1])
