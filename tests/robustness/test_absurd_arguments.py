@@ -45,6 +45,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "features": EDGES[:3],
             "may_collapse": False,
             "directions": np.ones(BALL.triangles.shape),
+            "scale": np.ones(len(BALL.positions)),
         },
     ),
     "Pins": (lsgp.Pins, {"corners": [0, 5], "uv": [[0, 0], [1, 0]]}),
@@ -110,12 +111,16 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.extract_quads,
         {"surface": WHOLE, "corner_uv": FINE_RESULT.corner_uv, "cell": 1.0, "progress": None},
     ),
-    "quad_quality": (lsgp.quad_quality, {"positions": BALL.positions, "quads": [[0, 1, 2, 3], [3, 2, 1, 0]]}),
+    "quad_quality": (
+        lsgp.quad_quality,
+        {"positions": BALL.positions, "quads": [[0, 1, 2, 3], [3, 2, 1, 0]], "density": np.ones(len(BALL.positions))},
+    ),
     "remesh_to_quads": (
         lsgp.remesh_to_quads,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "target": 200, "size": None},
             **{"options": lsgp.Options(seamless=lsgp.Seamless()), "count": 4, "polish": True, "progress": None},
+            "density": 2.0 ** BALL.positions[:, 0],
         },
     ),
     "singular_values": (lsgp.singular_values, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),

@@ -190,6 +190,7 @@ NATIVE = {
     "borders": np.empty((0, 2), np.int32),
     "directions": np.empty((0, 3)),
     "features": np.empty((0, 2), np.int32),
+    "scale": np.empty(0),
     "cones": MESH.cones,
     "angles": np.zeros(6),
     "has_angle": np.zeros(6, bool),
@@ -217,7 +218,7 @@ ODD = {
 def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
     """The native verb; it takes the arrays of the surface together, and those of the cones."""
     of_surface = ("positions", "triangles", "edges", "seams", "importance", "cut_costs", "borders")
-    surface_arrays = (*(arguments[name] for name in (*of_surface, "directions", "features")), False)
+    surface_arrays = (*(arguments[name] for name in (*of_surface, "directions", "features")), False, arguments["scale"])
     return _lsgp.parameterize(
         surface=surface_arrays,
         cones=tuple(arguments[name] for name in ("cones", "angles", "has_angle")),

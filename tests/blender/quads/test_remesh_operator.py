@@ -507,3 +507,57 @@ def test_rows_run_along_creases_unless_told_not_to(follows):
     at_planes = (np.abs(positions(made) @ normals.T - offsets) < 1e-5).sum(axis=1)
     on_edges = int((at_planes >= 2).sum())
     assert on_edges > 80 if follows else on_edges < 60
+
+
+# --- the density of quads ---------------------------------------------------------------------------------------------
+
+
+def weigh(obj, group=identifiers.QUAD_DENSITY_GROUP):
+    """A weight of 1 where x is 1, of 0 where it is -1, and linear between."""
+    group = obj.vertex_groups.new(name=group)
+    for vertex in obj.data.vertices:
+        group.add([vertex.index], (vertex.co.x / max(abs(v.co.x) for v in obj.data.vertices) + 1) / 2, "REPLACE")
+
+
+def sizes(obj):
+    """Mean areas of the quads in the outer quarters, where x is low and where it is high."""
+    faces = [(face.center.x, face.area) for face in obj.data.polygons]
+    reach = max(abs(x) for x, _ in faces)
+    return [np.mean([area for x, area in faces if sign * x > reach / 2]) for sign in (-1, 1)]
+
+
+def test_quads_are_smaller_where_the_group_of_density_has_weight():
+    ball = add_ball(cuts=7)
+    weigh(ball)
+    before = snapshot(ball)
+    made = remesh(count=1500)
+    assert changed(before, snapshot(ball)) <= ALLOWED
+    assert_closed(made, euler=2)
+    low, high = sizes(made)
+    # Between weights of 1/8 and 7/8 about 16^(3/4) = 8 times.
+    assert 5 < low / high < 12
+    assert len(made.data.polygons) == pytest.approx(1500, rel=0.1)
+
+
+def test_the_side_of_quads_is_that_where_the_weight_of_density_is_none():
+    ball = add_ball(cuts=7)
+    weigh(ball)
+    made = remesh(amount="SIZE", size=0.25, rows="FREE")
+    low, high = (math.sqrt(area) for area in sizes(made))
+    assert 0.15 < low < 0.25 and 0.25 / 4 < high < 0.15
+
+
+@pytest.mark.parametrize("options", [{"density_group": "none"}, {"density_group": ""}], ids=str)
+def test_density_has_no_say_without_its_group(options):
+    ball = add_ball()
+    plain = positions(remesh(count=400))
+    select_only(ball)
+    weigh(ball)
+    assert np.array_equal(positions(remesh(count=400, **options)), plain)
+
+
+def test_another_group_of_density_can_be_chosen():
+    ball = add_ball(cuts=5)
+    weigh(ball, "small here")
+    low, high = sizes(remesh(count=1000, density_group="small here"))
+    assert low > 4 * high

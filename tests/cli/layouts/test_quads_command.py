@@ -161,3 +161,47 @@ def test_creases_are_followed_unless_told_not_to(lsgp, tmp_path: Path) -> None:
     followed, free, marked = corners
     assert followed == marked > 50
     assert free < followed / 2
+
+
+def test_quads_are_smaller_where_the_density_is_high(lsgp, ball_files: Path) -> None:
+    ball = read_mesh(ball_files / "ball.obj").positions
+    high = np.flatnonzero(ball[:, 2] > 0).tolist()
+    files = {
+        "pairs.json": json.dumps([[vertex, 9] for vertex in high]),
+        "list.json": json.dumps(np.where(ball[:, 2] > 0, 9, 1).tolist()),
+        "numbers.txt": "\n".join(np.where(ball[:, 2] > 0, "9.0", "1").tolist()),
+    }
+    made = set()
+    for name, text in files.items():
+        (ball_files / name).write_text(text)
+        done = lsgp(*QUADS, "--target", 400, "--density", name, "--report", "report.json")
+        assert done.code == 0, done.err
+        made.add((ball_files / "quads.obj").read_bytes())
+    assert len(made) == 1
+    positions, quads = quads_of(ball_files / "quads.obj")
+    assert abs(len(quads) - 400) <= 40
+    a, b, c, d = positions[quads].transpose(1, 0, 2)
+    areas, heights = np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2, positions[quads].mean(axis=1)[:, 2]
+    assert areas[heights < -0.5].mean() > 5 * areas[heights > 0.5].mean()
+    assert " where the density is 1, " in done.out and "\nedges by the density: " in done.out
+    # The report has the same figures: edges of equal quads.
+    assert done.report()["quads"]["edge_deviation"] < 0.3
+
+
+def test_the_last_value_of_a_vertex_counts(lsgp, ball_files: Path) -> None:
+    (ball_files / "once.json").write_text(json.dumps([[5, 4]]))
+    (ball_files / "twice.json").write_text(json.dumps([[5, 9], [5, 4]]))
+    made = set()
+    for name in ("once.json", "twice.json"):
+        assert lsgp(*QUADS, "--target", 300, "--density", name).code == 0
+        made.add((ball_files / "quads.obj").read_bytes())
+    assert len(made) == 1
+
+
+def test_no_density_at_all_is_that_of_one(lsgp, ball_files: Path) -> None:
+    (ball_files / "none.json").write_text("[]")
+    made = set()
+    for density in ((), ("--density", "none.json")):
+        assert lsgp(*QUADS, "--target", 300, *density).code == 0
+        made.add((ball_files / "quads.obj").read_bytes())
+    assert len(made) == 1

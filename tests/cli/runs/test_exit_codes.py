@@ -19,6 +19,8 @@ from polygon_meshes import cube, obj_text, off_text, patch
 UNWRAP = ["unwrap", "in.obj", "-o", "out.obj"]
 SEAMLESS = [*UNWRAP, "--seamless"]
 LOW_STRETCH = [*UNWRAP, "--mode", "low-stretch"]
+QUADS = ["quads", "in.obj", "-o", "out.obj", "--target", "50"]
+TETRAHEDRON = "v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n"
 ROOF = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 # For the four vertices of it.
 IMPORTANCE = {
@@ -39,6 +41,23 @@ IMPORTANCE = {
     "[1, true, 1, 1]": "MALFORMED_FILE",
     "[[1], [1], [1], [1]]": "MALFORMED_FILE",
     '{"importance": [1, 1, 1, 1]}': "MALFORMED_FILE",
+}
+# On four vertices.
+DENSITY = {
+    "1 1 1": "WRONG_PARAMETER",
+    "1 0 1 1": "WRONG_PARAMETER",
+    "1 1 nan 1": "WRONG_PARAMETER",
+    "[1, 1, 1, -1]": "WRONG_PARAMETER",
+    "[1, 1, 1, Infinity]": "WRONG_PARAMETER",
+    "[[0, 0]]": "WRONG_PARAMETER",
+    "[[4, 2]]": "INDEX_OUT_OF_RANGE",
+    "[[-1, 2]]": "INDEX_OUT_OF_RANGE",
+    "[[99999999999, 2]]": "INDEX_OUT_OF_RANGE",
+    "1 1 one 1": "MALFORMED_FILE",
+    "[1, [1, 2], 1, 1]": "MALFORMED_FILE",
+    "[[0.5, 2]]": "MALFORMED_FILE",
+    "[[0, 1, 2]]": "MALFORMED_FILE",
+    '{"density": [1, 1, 1, 1]}': "MALFORMED_FILE",
 }
 REFUSED = (
     {
@@ -151,6 +170,14 @@ REFUSED = (
         )
         for content, code in IMPORTANCE.items()
     }
+    | {
+        f"density {content[:12]!r}": (
+            {"in.obj": "TETRAHEDRON", "density": content},
+            [*QUADS, "--density", "density"],
+            code,
+        )
+        for content, code in DENSITY.items()
+    }
 )
 WRONG_USAGE = {
     "no command": ([], "command"),
@@ -227,6 +254,7 @@ WRONG_USAGE = {
     "importance without low stretch": ([*UNWRAP, "--importance", "in.obj"], "--importance is for maps of low stretch"),
     "stretch that is no number": ([*LOW_STRETCH, "--stretch", "much"], "much"),
     "repair with a value": ([*UNWRAP, "--no-repair=yes"], "--no-repair"),
+    "missing density": ([*QUADS, "--density", "none.json"], "none.json"),
     "missing importance": ([*LOW_STRETCH, "--importance", "none.txt"], "none.txt"),
     "importance without end": ([*LOW_STRETCH, "--importance", "deep.json"], "deep.json"),
     "measure nothing": (["measure"], "FILE"),
