@@ -14,7 +14,9 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int32]
 _Places = NDArray[np.int64]
 _Flags = NDArray[np.bool_]
-_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices, _Floats, _Indices, bool]
+_Surface = tuple[
+    _Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices, _Floats, _Indices, bool, _Floats
+]
 _Cones = tuple[_Indices, _Floats, _Flags]
 _Pins = tuple[_Indices, _Floats]
 _Progress = Callable[[float], bool | None] | None

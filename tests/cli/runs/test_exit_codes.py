@@ -172,7 +172,7 @@ REFUSED = (
     }
     | {
         f"density {content[:12]!r}": (
-            {"in.obj": "TETRAHEDRON", "density": content},
+            {"in.obj": TETRAHEDRON, "density": content},
             [*QUADS, "--density", "density"],
             code,
         )
