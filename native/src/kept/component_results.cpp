@@ -97,8 +97,7 @@ void ComponentResults::keep_placement(PlacementInput input, PlacementResult resu
 bool is_same(const Component& a, const Component& b) {
   const HalfedgeMesh &mesh = a.mesh, &other = b.mesh;
   return a.orientable == b.orientable && a.source_vertex == b.source_vertex && a.source_triangle == b.source_triangle &&
-         a.reversed == b.reversed && is_equal(mesh.positions, other.positions) &&
-         is_equal(mesh.scale, other.scale) &&
+         a.reversed == b.reversed && is_equal(mesh.positions, other.positions) && is_equal(mesh.scale, other.scale) &&
          is_equal(mesh.triangles, other.triangles) && mesh.twin == other.twin && mesh.outgoing == other.outgoing &&
          mesh.cuttable == other.cuttable && mesh.seam == other.seam && mesh.feature == other.feature &&
          mesh.cut_factor == other.cut_factor && mesh.boundary_loops == other.boundary_loops;

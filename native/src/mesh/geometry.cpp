@@ -124,8 +124,7 @@ Geometry completed(const HalfedgeMesh& mesh, Geometry geometry) {
 Geometry build_geometry(const HalfedgeMesh& mesh, const Eigen::VectorXd& scale) {
   Geometry geometry = unmeasured(mesh);
   PerTriangle<char> is_degenerate(mesh.triangle_count());
-  for_each_at_once(mesh.triangle_count(),
-                   [&](Index f) { is_degenerate[f] = measure(mesh, scale, geometry, f); });
+  for_each_at_once(mesh.triangle_count(), [&](Index f) { is_degenerate[f] = measure(mesh, scale, geometry, f); });
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (is_degenerate[f]) geometry.degenerate.push_back(f);
   }

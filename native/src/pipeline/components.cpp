@@ -132,7 +132,8 @@ void hand_out_directions(const Positions& directions, const Options& options, Wo
   }
 }
 
-// The power of two that brings the surface's metric to about unit size: exact, and areas can neither overflow nor vanish.
+// The power of two that brings the surface's metric to about unit size: exact, and areas can neither overflow nor
+// vanish.
 double unit_scale(const Surface& surface) {
   double largest = 0;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {

@@ -86,8 +86,8 @@ void require_scale(const Surface& surface, const PerVertex<char>& used) {
   const Index n = static_cast<Index>(surface.positions.rows());
   if (scale.size() == 0) return;
   if (scale.size() != n) {
-    throw Error(Code::wrong_parameter, concat("There are ", scale.size(), " factors of lengths for ", n,
-                                              " vertices. Give one for each."));
+    throw Error(Code::wrong_parameter,
+                concat("There are ", scale.size(), " factors of lengths for ", n, " vertices. Give one for each."));
   }
   Array<Index> bad;
   for (Index v = 0; v < n; ++v) {

@@ -43,8 +43,7 @@ struct Measured {
 Measured measure(const Surface& surface, const CornerUv& corner_uv, Index f) {
   Complex z[3];
   for (int c = 0; c < 3; ++c) z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
-  const auto [square, dot, doubled] =
-      two_sides(surface.positions, surface.triangles, surface.scale, f);
+  const auto [square, dot, doubled] = two_sides(surface.positions, surface.triangles, surface.scale, f);
   Measured out{};
   if (!(doubled > 0)) return out;
   out.doubled = doubled;
