@@ -103,6 +103,10 @@ lsgp::Surface make_surface(Bytes& bytes) {
       surface.directions.data()[i] = bytes.once_in(4) ? bytes.number() : bytes.below(3) - 1;
     }
   }
+  if (bytes.once_in(8)) {
+    surface.scale.setOnes(bytes.once_in(8) ? bytes.below(4) : surface.positions.rows());
+    for (double& factor : surface.scale) factor = bytes.once_in(16) ? bytes.number() : 1 + bytes.below(8) / 8.0;
+  }
   return surface;
 }
 

@@ -54,6 +54,7 @@ void print(const lsgp::Surface& surface) {
   if (surface.edges) print_rows("edges", *surface.edges);
   if (surface.importance.size() > 0) print_rows("importance", surface.importance.transpose());
   if (surface.directions.size() > 0) print_rows("directions", surface.directions);
+  if (surface.scale.size() > 0) print_rows("scale", surface.scale.transpose());
 }
 
 void print(const lsgp::Cones& cones) {

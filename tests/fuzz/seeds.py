@@ -30,8 +30,8 @@ def surfaces() -> Iterator[bytes]:
         for shape in range(SHAPES):
             for parts in range(2):
                 part = bytes([shape, 2, 2])
-                # Moved, changed, scale, seams, borders, edges, importance, directions.
-                sound = bytes(8)
+                # Moved, changed, size, seams, borders, features, edges, importance, directions, scale.
+                sound = bytes(10)
                 yield bytes([verb, parts]) + part * (parts + 1) + sound + numbers.randbytes(60)
         yield bytes([verb]) + numbers.randbytes(200)
 
