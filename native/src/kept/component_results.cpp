@@ -100,7 +100,8 @@ bool is_same(const Component& a, const Component& b) {
          a.reversed == b.reversed && is_equal(mesh.positions, other.positions) && is_equal(mesh.scale, other.scale) &&
          is_equal(mesh.triangles, other.triangles) && mesh.twin == other.twin && mesh.outgoing == other.outgoing &&
          mesh.cuttable == other.cuttable && mesh.seam == other.seam && mesh.feature == other.feature &&
-         mesh.cut_factor == other.cut_factor && mesh.boundary_loops == other.boundary_loops;
+         mesh.is_feature_junction == other.is_feature_junction && mesh.cut_factor == other.cut_factor &&
+         mesh.boundary_loops == other.boundary_loops;
 }
 
 }  // namespace lsgp

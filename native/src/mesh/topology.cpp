@@ -357,6 +357,19 @@ struct JoinedTriangles {
   const Orientation& orientation;
 };
 
+// Vertices at which three or more marked edges meet.
+PerVertex<char> feature_junctions(const Surface& surface, const JoinedTriangles& joined) {
+  PerVertex<int> count(surface.positions.rows(), 0);
+  for (Index edge = 0; edge < ssize(joined.marks.feature); ++edge) {
+    if (!joined.marks.feature[edge]) continue;
+    const Index h = joined.edges.halfedge(edge, 0);
+    for (const Index corner : {h, next(h)}) ++count[surface.triangles.data()[corner]];
+  }
+  PerVertex<char> out(surface.positions.rows(), 0);
+  for (Index v = 0; v < ssize(count); ++v) out[v] = count[v] > 2;
+  return out;
+}
+
 // Components with their halfedge meshes, those that are not orientable without.
 PerComponent<Component> build_components(const Surface& surface, const JoinedTriangles& joined) {
   const Orientation& orientation = joined.orientation;
@@ -376,6 +389,7 @@ PerComponent<Component> build_components(const Surface& surface, const JoinedTri
     const Index f = h / 3, c = h % 3;
     return 3 * local_triangle[f] + (orientation.reversed[f] ? 2 - c : c);
   };
+  const PerVertex<char> is_junction = feature_junctions(surface, joined);
   for (std::size_t i = 0; i < components.size(); ++i) {
     Component& component = components[i];
     component.orientable = orientation.orientable[i];
@@ -397,6 +411,9 @@ PerComponent<Component> build_components(const Surface& surface, const JoinedTri
       }
     }
     number_vertices(surface, component);
+    if (mesh.has_features()) {
+      for (const Index v : component.source_vertex) mesh.is_feature_junction.push_back(is_junction[v]);
+    }
     measure_topology(mesh);
   }
   return components;

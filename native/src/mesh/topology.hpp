@@ -30,6 +30,7 @@ struct HalfedgeMesh {
   PerVertex<Index> outgoing;             // a halfedge leaving each vertex; on the boundary the one without a twin
   PerHalfedge<char> cuttable, seam;      // equal on both halfedges of an edge
   PerHalfedge<char> feature;             // marked to run along an axis, on both halfedges, or empty: none
+  PerVertex<char> is_feature_junction;   // of three or more marked edges, borders' other sides included; empty: none
   PerHalfedge<double> cut_factor;        // cost per length of a cut along the edge, or empty: 1
   PerLoop<Array<Index>> boundary_loops;  // vertices, surface on the left
   PerVertex<Index> loop_of_vertex;       // none inside

@@ -165,10 +165,10 @@ bool ComponentRepair::may_straighten(const ComponentMap& map) const {
 std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
-  std::optional<StraightSides> sides = sides_to_straighten(
-      surface, map, options_.straighten && !mesh_.closed() ? SideKinds::with_sides : SideKinds::marked);
+  const SideKinds kinds = options_.straighten && !mesh_.closed() ? SideKinds::with_sides : SideKinds::marked;
+  std::optional<StraightSides> sides = sides_to_straighten(surface, map, kinds);
   if (!sides) return std::nullopt;
-  return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
+  return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map, kinds,
                              std::move(*sides));
 }
 

@@ -52,6 +52,16 @@ bool is_one_network(const CutSurface& surface) {
   return nodes.order.size() == nodes.vertex.size();
 }
 
+// Of all marked features.
+double marked_length(const CutSurface& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  double out = 0;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.feature[h] && h > mesh.twin[h]) out += surface.geometry.length[h];
+  }
+  return out;
+}
+
 // Straightens all sides at once, or else as many as possible: halves that fail are divided again. Marked features,
 // which may cost more, come first.
 class SideSearch {
@@ -90,6 +100,9 @@ class SideSearch {
     }
     return std::move(best_);
   }
+
+  // Of marked features that are straight.
+  double marked_length() const { return straight_.marked_length(); }
 
  private:
   static constexpr double most_growth_for_marked = 1.1;  // of the L2 stretch
@@ -181,18 +194,38 @@ class SideSearch {
 
 }  // namespace
 
-std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds) {
-  StraightSides straight =
-      find_straight_sides(surface, *map.rotation, map.position,
-                          {most_bend(map.natural_l2), kinds == SideKinds::with_creases, kinds == SideKinds::marked});
+std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds,
+                                                 LineReading reading) {
+  StraightSides straight = find_straight_sides(
+      surface, *map.rotation, map.position,
+      {most_bend(map.natural_l2), kinds == SideKinds::with_creases, kinds == SideKinds::marked, reading});
   if (!straight.reasons.empty()) return straight;
   if (straight.sides.empty() || (!straight.is_bent() && !straight.has_axes)) return std::nullopt;
   return straight;
 }
 
-std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map,
+std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map, SideKinds kinds,
                                                 StraightSides straight) {
-  return SideSearch(task, map, std::move(straight)).search();
+  constexpr double rounding = 1e-9;    // of lengths
+  constexpr double least_gain = 0.03;  // of the marked length: a small one may be lost when islands are straightened
+  const bool has_marked = !straight.reasons.empty();
+  const double all = has_marked ? marked_length(task.surface) : 0;
+  Array<Array<StraightSide>> tried{straight.sides};
+  SideSearch search(task, map, std::move(straight));
+  std::optional<ComponentMap> best = search.search();
+  double most = search.marked_length();
+  for (const LineReading reading : {LineReading::opened, LineReading::divided}) {
+    if (most >= all * (1 - rounding)) break;
+    std::optional<StraightSides> other = sides_to_straighten(task.surface, map, kinds, reading);
+    if (!other || std::find(tried.begin(), tried.end(), other->sides) != tried.end()) continue;
+    tried.push_back(other->sides);
+    SideSearch again(task, map, std::move(*other));
+    std::optional<ComponentMap> found = again.search();
+    if (!(again.marked_length() > most + least_gain * all)) continue;
+    most = again.marked_length();
+    best = std::move(found);
+  }
+  return best;
 }
 
 void straighten_islands(const MetricMesh& surface, SideKinds kinds, const StretchOptions& options,
@@ -203,7 +236,7 @@ void straighten_islands(const MetricMesh& surface, SideKinds kinds, const Stretc
   if (!sides) return;
   const ParallelTransport connection = connection_of_map(opened, map.curvature, *map.rotation, map.position);
   std::optional<ComponentMap> straight =
-      with_straight_sides({opened, connection, options, before_step}, map, std::move(*sides));
+      with_straight_sides({opened, connection, options, before_step}, map, kinds, std::move(*sides));
   if (straight) map = std::move(*straight);
 }
 

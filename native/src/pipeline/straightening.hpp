@@ -15,7 +15,8 @@ namespace lsgp {
 enum class SideKinds { marked, with_sides, with_creases };
 
 // The sides of these kinds in a map; none if there is nothing to do.
-std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds);
+std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds,
+                                                 LineReading reading = LineReading::nearest);
 
 // A map of low stretch that is to be changed.
 struct StraighteningTask {
@@ -27,8 +28,9 @@ struct StraighteningTask {
 
 // The map with as many of these sides straight as its natural stretch, `ComponentMap::natural_l2`, allows without flips
 // or overlaps of an island with itself, those of the boundary before creases inside, and marked features before both,
-// which may cost a tenth of stretch; none if it allows no side.
-std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map,
+// which may cost a tenth of stretch; none if it allows no side. Where marked features stay bent, their other readings
+// are tried, and replace it where more of their length is straight.  kinds: of the sides.
+std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map, SideKinds kinds,
                                                 StraightSides straight);
 
 // The same for a map that was cut into islands, which may have been moved. Islands may be shifted.

@@ -35,13 +35,14 @@ double nearest_quarter_turn(double angle) { return std::round(angle / (M_PI / 2)
 class FeatureTracer {
  public:
   FeatureTracer(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,
-                const Eigen::VectorXcd& position)
+                const Eigen::VectorXcd& position, LineReading reading)
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
         cut_mesh_(surface.cut_mesh),
         feature_(feature),
         ends_(ends),
         position_(position),
+        ends_at_junctions_(reading == LineReading::divided && surface.mesh.has_features()),
         is_traced_(surface.mesh.halfedge_count(), 0) {}
 
   FeatureLines trace() {
@@ -57,6 +58,7 @@ class FeatureTracer {
 
  private:
   static constexpr double line_corner = M_PI / 4;         // the least turning at a corner of a line
+  static constexpr double junction_corner = M_PI / 9;     // the same at a junction
   static constexpr double most_off_axis = M_PI * 5 / 18;  // of an edge from the axis of its line
   static constexpr double least_diagonal = 0.6;           // of a line between both axes
 
@@ -79,7 +81,8 @@ class FeatureTracer {
       ++count;
     });
     if (count != 1 || feature_[found] != feature_[h] || is_border(found) != is_border(h)) return none;
-    return std::abs(turning(h, found)) < line_corner ? found : none;
+    const bool is_junction = ends_at_junctions_ && mesh_.is_feature_junction[v];
+    return std::abs(turning(h, found)) < (is_junction ? junction_corner : line_corner) ? found : none;
   }
 
   // From h to the feature edge g at its target, in the layout, to the left; 0 for a straight line.
@@ -178,7 +181,158 @@ class FeatureTracer {
   const PerHalfedge<char>& feature_;
   const PerVertex<char>& ends_;
   const Eigen::VectorXcd& position_;
+  const bool ends_at_junctions_;
   PerHalfedge<char> is_traced_;
+};
+
+// Lines at a small angle to each other may be nearest to the same axis, which would leave what is between them no area.
+// Turns those that bend least by it to the other axis, so that a quarter turn or more is left between lines that are
+// beside each other at a vertex.
+class CornerOpener {
+ public:
+  CornerOpener(const CutSurface& surface, const Eigen::VectorXcd& position, Array<FeatureLine>& lines)
+      : mesh_(surface.mesh),
+        cut_mesh_(surface.cut_mesh),
+        position_(position),
+        lines_(lines),
+        line_of_(mesh_.halfedge_count(), none),
+        off_(mesh_.halfedge_count(), 0),
+        mean_off_(lines.size(), 0),
+        turn_(lines.size(), 0),
+        wedges_of_(lines.size()) {
+    for (Index k = 0; k < ssize(lines_); ++k) list_edges(k, surface.geometry);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) list_wedges(v);
+  }
+
+  void open() {
+    while (turn_one()) continue;  // each step leaves less to open
+    for (Index k = 0; k < ssize(lines_); ++k) {
+      if (turn_[k] == 0) continue;
+      FeatureLine& line = lines_[k];
+      line.bend = bend_after(k, turn_[k]);
+      line.comes_last = true;
+      for (Complex& direction : line.directions) direction *= Complex(0, turn_[k]);
+    }
+  }
+
+ private:
+  static constexpr double most_bend = 1.25;   // of a line that is turned, radians
+  static constexpr double least_cost = 1e-3;  // of turning a line, relative to its length
+  static constexpr double rounding = 1e-6;    // of quarter turns
+
+  // Between lines that follow each other counterclockwise around a vertex.
+  struct Wedge {
+    Index right, left;
+    int quarters;  // between the axes as they were
+  };
+
+  Complex edge(Index h) const {
+    return position_[cut_mesh_.copy_of_corner[next(h)]] - position_[cut_mesh_.copy_of_corner[h]];
+  }
+
+  void list_edges(Index k, const Geometry& geometry) {
+    const FeatureLine& line = lines_[k];
+    for (Index i = 0; i < ssize(line.halfedges); ++i) {
+      const Index h = line.halfedges[i];
+      const double off = std::arg(edge(h) / line.directions[i]);
+      mean_off_[k] += geometry.length[h] * off / line.length;
+      for (const Index side : {h, mesh_.twin[h]}) {
+        if (side == none) continue;
+        line_of_[side] = k;
+        off_[side] = off;
+      }
+    }
+  }
+
+  void list_wedges(Index v) {
+    Index first = none, last = none;  // halfedges from v
+    double between = 0, before_first = 0;
+    const auto add = [&](Index right, Index left, double angle) {
+      if (line_of_[right] == line_of_[left]) return;
+      const double quarters = (angle + off_[right] - off_[left]) / (M_PI / 2);
+      if (std::abs(quarters - std::round(quarters)) > rounding) return;  // across a cut that turns by other angles
+      const Index wedge = static_cast<Index>(wedges_.size());
+      wedges_.push_back({line_of_[right], line_of_[left], static_cast<int>(std::lround(quarters))});
+      for (const Index k : {line_of_[right], line_of_[left]}) wedges_of_[k].push_back(wedge);
+    };
+    const auto pass = [&](Index h) {
+      if (line_of_[h] == none) return;
+      if (last == none) {
+        first = h;
+        before_first = between;
+      } else {
+        add(last, h, between);
+      }
+      last = h;
+      between = 0;
+    };
+    Index last_side = none;  // of the boundary, toward v
+    mesh_.for_each_outgoing(v, [&](Index h) {
+      pass(h);
+      between += std::arg(-edge(prev(h)) / edge(h));
+      last_side = prev(h);
+    });
+    if (mesh_.loop_of_vertex[v] == none) {
+      if (last != first) add(last, first, between + before_first);
+    } else if (last != none && line_of_[last_side] != none) {
+      add(last, last_side, between);
+    }
+  }
+
+  double bend_after(Index k, int turn) const {
+    const double by = turn * M_PI / 2;
+    const double squares = lines_[k].bend * lines_[k].bend - 2 * by * mean_off_[k] + by * by;
+    return std::sqrt(std::max(0.0, squares));
+  }
+
+  int lack(const Wedge& wedge) const {
+    return std::max(0, 1 - (wedge.quarters + turn_[wedge.left] - turn_[wedge.right]));
+  }
+
+  // Turns the line that gains most for what it costs, if any does.
+  bool turn_one() {
+    Index best = none;
+    int best_by = 0;
+    double most = 0;
+    for (Index k = 0; k < ssize(lines_); ++k) {
+      const int before = lack_around(k);
+      if (before == 0) continue;
+      for (const int by : {-1, 1}) {
+        if (std::abs(turn_[k] + by) > 1) continue;
+        const double bend = bend_after(k, turn_[k] + by), bend_before = bend_after(k, turn_[k]);
+        if (bend > most_bend) continue;
+        turn_[k] += by;
+        const int gain = before - lack_around(k);
+        turn_[k] -= by;
+        if (gain <= 0) continue;
+        const double cost = std::max(least_cost, bend * bend - bend_before * bend_before) * lines_[k].length;
+        if (gain / cost <= most * (1 + 1e-9)) continue;
+        most = gain / cost;
+        best = k;
+        best_by = by;
+      }
+    }
+    if (best == none) return false;
+    turn_[best] += best_by;
+    return true;
+  }
+
+  int lack_around(Index k) const {
+    int out = 0;
+    for (const Index wedge : wedges_of_[k]) out += lack(wedges_[wedge]);
+    return out;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const CutMesh& cut_mesh_;
+  const Eigen::VectorXcd& position_;
+  Array<FeatureLine>& lines_;
+  PerHalfedge<Index> line_of_;
+  PerHalfedge<double> off_;  // from its axis, radians
+  Array<double> mean_off_;   // of lines
+  Array<int> turn_;          // of lines, quarters
+  Array<Array<Index>> wedges_of_;
+  Array<Wedge> wedges_;
 };
 
 }  // namespace
@@ -202,8 +356,9 @@ Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& fea
 }
 
 FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,
-                            const Eigen::VectorXcd& position) {
-  FeatureLines out = FeatureTracer(surface, feature, ends, position).trace();
+                            const Eigen::VectorXcd& position, LineReading reading) {
+  FeatureLines out = FeatureTracer(surface, feature, ends, position, reading).trace();
+  if (reading != LineReading::nearest) CornerOpener(surface, position, out.straight).open();
   const auto rank = [](const FeatureLine& line) {
     return std::tuple(!line.is_marked, line.comes_last, line.bend * line.bend * line.length);
   };

@@ -33,8 +33,15 @@ struct FeatureLines {
 Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position,
                          double least_common = 0);
 
+// What axes lines get, and where they end.
+enum class LineReading {
+  nearest,  // the axis nearest to each line
+  opened,   // another one where lines beside each other at a vertex would have the same axis and direction
+  divided,  // and lines end where they turn at junctions of marked edges, those of borders included
+};
+
 // ends: vertices at which lines end in addition, (n).
 FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,
-                            const Eigen::VectorXcd& position);
+                            const Eigen::VectorXcd& position, LineReading reading = LineReading::nearest);
 
 }  // namespace lsgp

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "creases/features.hpp"
-#include "repair/feature_lines.hpp"
 
 namespace lsgp {
 
@@ -254,7 +253,7 @@ bool is_marked(const HalfedgeMesh& mesh, Index h) { return mesh.has_features() &
 
 // The marked features, aligned with the axes, as sides of one direction each, and the reasons of those that cannot be.
 void add_marked_sides(const CutSurface& surface, const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position,
-                      StraightSides& out) {
+                      LineReading reading, StraightSides& out) {
   const HalfedgeMesh& mesh = surface.mesh;
   PerHalfedge<char> feature(mesh.halfedge_count(), no_feature);
   PerVertex<char> ends(mesh.vertex_count(), 0);
@@ -267,7 +266,7 @@ void add_marked_sides(const CutSurface& surface, const Eigen::VectorXd& rotation
   out.reasons.assign(mesh.halfedge_count(), ReleaseReason::contradiction);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
   out.turn = turn_to_features(surface, feature, position);
-  const FeatureLines lines = trace_features(surface, feature, ends, out.turn * position);
+  const FeatureLines lines = trace_features(surface, feature, ends, out.turn * position, reading);
   for (const Index h : lines.curved) out.reasons[h] = ReleaseReason::curved;
   for (const FeatureLine& line : lines.straight) {
     for (Index i = 0; i < ssize(line.halfedges); ++i) {
@@ -289,12 +288,12 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
   const HalfedgeMesh& mesh = surface.mesh;
   const CutGraph& cut_graph = surface.cut_graph;
   const CutMesh& cut_mesh = surface.cut_mesh;
-  const auto [most_bend, with_creases, only_marked] = limits;
+  const auto [most_bend, with_creases, only_marked, reading] = limits;
   const auto may_be_straight = [&, &cut_graph = cut_graph](Index h) {
     return !is_marked(mesh, h) && (cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]));
   };
   StraightSides out;
-  if (mesh.has_features()) add_marked_sides(surface, rotation, position, out);
+  if (mesh.has_features()) add_marked_sides(surface, rotation, position, reading, out);
   const bool has_marked = !out.sides.empty();
   if (only_marked) return out;
   const Array<Array<Index>> borders = open_boundaries(mesh, cut_mesh);

@@ -10,6 +10,7 @@
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
 #include "lsgp/result.hpp"
+#include "repair/feature_lines.hpp"
 
 namespace lsgp {
 
@@ -24,6 +25,8 @@ struct StraightSide {
 
   // Whether it deviates from its direction by more than rounding.
   bool is_bent() const { return bend > 1e-9; }
+  // Whether the same edges get the same direction.
+  bool operator==(const StraightSide& b) const { return halfedges == b.halfedges && direction == b.direction; }
 };
 
 struct StraightSides {
@@ -31,6 +34,13 @@ struct StraightSides {
   bool has_axes = false;  // a considerable part of the boundary is along the axes
   Array<StraightSide> sides;
   PerHalfedge<ReleaseReason> reasons{};  // why marked features are not among the sides; empty without
+
+  // Of those that are marked.
+  double marked_length() const {
+    double out = 0;
+    for (const StraightSide& side : sides) out += side.is_marked ? side.length : 0;
+    return out;
+  }
 
   bool is_bent() const {
     return std::any_of(sides.begin(), sides.end(), [](const StraightSide& side) { return side.is_bent(); });
@@ -45,6 +55,7 @@ struct SideLimits {
   double most_bend;   // radians
   bool with_creases;  // inside
   bool only_marked;   // features, which may be bent as far as they are nearer to one axis than to the other
+  LineReading reading = LineReading::nearest;  // of marked features
 };
 StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
                                   const Eigen::VectorXcd& position, const SideLimits& limits);

@@ -128,6 +128,34 @@ def test_what_the_other_options_do_with_marked_edges() -> None:
 
 
 @pytest.mark.parametrize(
+    "transform, least",
+    [([[1, 0, 1.5], [0, 1, 0.5], [0, 0, 1]], 0.8), pytest.param("taper", 0.93, marks=pytest.mark.many_solves)],
+    ids=["oblique", "tapered"],
+)
+def test_edges_at_small_angles_get_different_axes(transform: list[list[float]] | str, least: float) -> None:
+    """Both are nearest to the same axis, along which the face between them would have no area."""
+    wheel = closed.toothed_wheel(8, 0.25)
+    x, y, z = wheel.positions.T
+    narrow = 1 - 0.6 * z
+    moved = (
+        np.stack([x * narrow, y * narrow, z], axis=1)
+        if transform == "taper"
+        else wheel.positions @ np.array(transform).T
+    )
+    mesh = wheel._replace(positions=moved)
+    edges = lsgp.feature_edges(surface(mesh), angle=np.radians(40))
+    marked = replace(surface(mesh), features=edges)
+    result = lsgp.auto_unwrap(marked, preset="paint", options=PAINT)
+    free = lsgp.auto_unwrap(surface(mesh), preset="paint", options=PAINT)
+    length = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
+    is_straight = distance_off_axes(mesh, result, edges) == 0
+    assert result.features.share == pytest.approx(length[is_straight].sum() / length.sum(), abs=1e-12)
+    assert result.features.share > least
+    assert result.distortion.l2_stretch < MOST_L2 * free.distortion.l2_stretch
+    assert undeclared_faults(replace(marked, borders=result.borders), result, PAINT) == []
+
+
+@pytest.mark.parametrize(
     "mesh", [closed.gear(6, 0.3, 2), pytest.param(closed.gear(12, 0.3, 2), marks=pytest.mark.many_solves)]
 )
 def test_the_share_counts_edges_between_islands_once(mesh: Mesh) -> None:
