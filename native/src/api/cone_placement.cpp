@@ -109,17 +109,20 @@ PlacedCones place_alone(const PlacementTask& task, const Positions& directions, 
                         std::vector<Finding>& findings) {
   PlacedCones found = place_component(task, rules.options, findings, rules.monitor);
   if (directions.rows() == 0) return found;
-  auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
-  return beside ? std::move(*beside) : std::move(found);
+  if (rules.options.lattice && !rules.options.count) {
+    auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
+    if (beside) found = std::move(*beside);
+  }
+  auto toward = turn_toward_strokes(task, directions, rules.options, found, rules.monitor);
+  return toward ? std::move(*toward) : std::move(found);
 }
 
 // results: of the component, or null.
 PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
                      ComponentResults* results, std::vector<Finding>& findings) {
   if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
-  const bool is_directed = rules.surface.directions.rows() > 0 && rules.options.lattice && !rules.options.count;
   PlacementInput input{task.existing, task.allowed, task.mirrored, {}, rules.options};
-  if (is_directed) input.directions = directions_on(component, rules.surface.directions);
+  if (rules.surface.directions.rows() > 0) input.directions = directions_on(component, rules.surface.directions);
   PlacedCones placed;
   const PlacementResult* known = results == nullptr ? nullptr : results->find_placement(input);
   if (known != nullptr) {

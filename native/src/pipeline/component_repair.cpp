@@ -110,7 +110,7 @@ void ComponentRepair::smooth(ComponentMap& map) {
 double ComponentRepair::continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map,
                                       std::vector<Finding>& findings) {
   const CutSurface surface = open(start);
-  const ParallelTransportChoice connections(surface, metric.end, task_.cones.rotation_order);
+  const ParallelTransportChoice connections(surface, metric.end, task_.cones.rotation_order, task_.strokes());
   Path path = path_between(metric.begin, connections, metric.end);
   path.aligned = aligned_edges(mesh_, task_.cones);
   Continuation found = follow(surface, path, Effort::global, counter(), {start.position, fixed_vertices(map)});
@@ -176,7 +176,7 @@ ParallelTransport ComponentRepair::connection_of(const ComponentMap& map) const 
   constexpr double same_rotation = 1e-12;  // radians
   const CutSurface surface = open(map);
   ParallelTransport metric =
-      ParallelTransportChoice(surface, map.curvature, task_.cones.rotation_order).at(1, map.curvature);
+      ParallelTransportChoice(surface, map.curvature, task_.cones.rotation_order, task_.strokes()).at(1, map.curvature);
   const auto off = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); };
   for (Eigen::Index p = 0; p < map.rotation->size(); ++p) {
     if (off(metric.rotation[p], (*map.rotation)[p]) > same_rotation) {

@@ -23,6 +23,10 @@ struct ComponentTask {
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
   bool has_directed_borders = false;                // whose turning follows directions, not the surface
+  bool follows_strokes = false;                     // whether angles and rotations are chosen for directions, too
+
+  // Those that choices follow, or null.
+  const TextureDirections* strokes() const { return follows_strokes ? &directions : nullptr; }
 };
 
 // A surface's components and the task of each.

@@ -17,10 +17,6 @@ constexpr double most_growth = 1.2;   // of the L2 stretch, for straight courses
 constexpr double most_missed = 0.12;  // radians, of courses that count as straight; half as much as before does as well
 constexpr double least_gain = 0.05;   // radians
 
-struct DirectedMap {
-  double l2, missed;
-};
-
 // None where there is no valid map.
 std::optional<DirectedMap> attempt(const MetricMesh& surface, const ComponentTask& task, ProgressMonitor& monitor) {
   const LinearAlgebraCounter apart;
@@ -42,6 +38,11 @@ std::optional<DirectedMap> attempt(const MetricMesh& surface, const ComponentTas
 
 bool straightens_courses(double missed, double before) {
   return missed <= std::max(most_missed, before / 2) && missed < before - least_gain;
+}
+
+bool is_worth_strokes(const DirectedMap& toward, const DirectedMap& usual) {
+  constexpr double most_stretch = 1.1, least = 0.01;  // times the usual one; radians
+  return toward.l2 <= most_stretch * usual.l2 && toward.missed < usual.missed - least;
 }
 
 void free_stretched_borders(const MetricMesh& surface, ProgressMonitor& monitor, ComponentTask& task) {

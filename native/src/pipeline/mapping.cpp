@@ -11,9 +11,11 @@
 #include "base/text.hpp"
 #include "pipeline/component_repair.hpp"
 #include "pipeline/component_unfold.hpp"
+#include "pipeline/directed_borders.hpp"
 #include "pipeline/straightening.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
+#include "prescription/stroke_fit.hpp"
 #include "repair/flat_metric.hpp"
 #include "solvers/failure.hpp"
 #include "unfold/jacobians.hpp"
@@ -99,6 +101,10 @@ class Mapping {
 
   // A metric whose angles add up as they have to is found more often than a map. Its own map is as exact.
   void map_flat_metric(FoundMap& found);
+  // Automatic angles and rotations about handles chosen for strokes, if the map gains by it.
+  bool may_follow_strokes() const;
+  void follow_strokes(FoundMap& found);
+  double misalignment(const ComponentMap& map) const;
   // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
   // have one.
   void approach_angles(FoundMap& found);
@@ -145,6 +151,7 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
   }
   if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
+  if (found.defects() == 0 && may_follow_strokes()) follow_strokes(found);
   if (found.defects() == 0) {
     const bool is_relaxed = options_.mode == Mode::low_stretch && options_.stretch > 0;
     if (is_relaxed) repair_on(system_, task_).relax(found.map);
@@ -255,7 +262,7 @@ void Mapping::prescribe_angles(ComponentSystem& system, const ComponentTask& tas
   const ProgressMonitor::Interval interval(monitor_, 0, 0.2);
   monitor_.advance(0);
   found.map.holes = task.cones.holes;
-  found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings);
+  found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings, task.strokes());
 }
 
 void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map) {
@@ -288,7 +295,7 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
     map.position = unfold_lscm(system.surface(), map.cut_mesh);
     return repair.check(map);
   }
-  const ParallelTransportChoice connections(surface, map.curvature, task.cones.rotation_order);
+  const ParallelTransportChoice connections(surface, map.curvature, task.cones.rotation_order, task.strokes());
   const ParallelTransport connection = connections.at(1, map.curvature);
   map.rotation = connection.rotation;
   const bool is_spectral =
@@ -314,6 +321,34 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
     const Array<Index> flipped = map.validity.flipped;
     repair.repair(connections, connection, target, effort, map);
     if (map.validity.defects() == 0) repair.polish(connection, flipped, map);
+  }
+}
+
+bool Mapping::may_follow_strokes() const {
+  const bool chooses_angles = options_.prescription == PrescriptionRule::least_distortion ||
+                              (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
+  const bool chooses_rotations = task_.cones.rotation_order > 0 && system_.mesh().genus > 0;
+  return repairs_ && (chooses_angles || chooses_rotations) && task_.pinned_corners.size() < 2 &&
+         are_strokes(task_.directions, system_.geometry());
+}
+
+double Mapping::misalignment(const ComponentMap& map) const {
+  return misalignment_on_lattice(task_.directions, at_corners(map.cut_mesh, map.position),
+                                 std::max(task_.cones.rotation_order, 1));
+}
+
+void Mapping::follow_strokes(FoundMap& found) {
+  ComponentTask toward = task_;
+  toward.follows_strokes = true;
+  Array<Eigen::VectorXd> untried;
+  try {
+    FoundMap tried = std::move(*attempt(system_, toward, Effort::local, untried));
+    if (tried.defects() > 0) return;
+    if (is_worth_strokes({l2_of(tried.map), misalignment(tried.map)}, {l2_of(found.map), misalignment(found.map)})) {
+      found = std::move(tried);
+    }
+  } catch (const Error& error) {
+    if (error.code() != Code::solver_failed) throw;
   }
 }
 

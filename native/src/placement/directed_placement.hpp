@@ -15,4 +15,10 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
                                                    const PlacementOptions& options, const PlacedCones& usual,
                                                    ProgressMonitor& monitor);
 
+// The usual cones with automatic angles chosen for strokes. None if directions are not strokes, or what that gains is
+// not worth its stretch.
+std::optional<PlacedCones> turn_toward_strokes(const PlacementTask& task, const Positions& directions,
+                                               const PlacementOptions& options, const PlacedCones& usual,
+                                               ProgressMonitor& monitor);
+
 }  // namespace lsgp

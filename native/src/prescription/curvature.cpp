@@ -13,6 +13,7 @@
 #include "prescription/component_system.hpp"
 #include "prescription/quantize_curvature.hpp"
 #include "prescription/straight_angles.hpp"
+#include "prescription/stroke_fit.hpp"
 #include "solvers/box_qp.hpp"
 #include "systems/quadratic_forms.hpp"
 
@@ -72,7 +73,13 @@ enum class Sum { is, is_at_most, is_at_least };
               {ElementKind::vertices, cones.vertices});
 }
 
-Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
+// Curvatures of least distortion, and the bounds they were chosen within.
+struct LeastDistortion {
+  Bounds bounds;
+  Eigen::VectorXd curvature;
+};
+
+LeastDistortion least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd harmonic = scale.harmonic_curvature();
   Bounds bounds = bounds_from_angles(mesh, cones, cones.range.smallest, cones.range.largest, largest_share_of_valence);
   const Bounds widest = widest_bounds(mesh, cones);
@@ -88,7 +95,39 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     if (bounds.high.sum() < required) bounds.high = widest.high;
     start = nearest_with_sum(bounds.low, bounds.high, start, required);
   }
-  return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
+  Eigen::VectorXd curvature = scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
+  return {std::move(bounds), std::move(curvature)};
+}
+
+// Curvatures near those of least distortion with which strokes are parallel, as far as the price of their misfit makes
+// that worth its distortion: to second order, the logarithm of the L2 stretch is twice the variance of the log scale.
+Eigen::VectorXd toward_strokes(const LeastDistortion& least, const LogScale& scale, const LogScale::Variance& misfit,
+                               double price) {
+  constexpr double ridge = 1e-9;  // relative; the sum may have no effect on the variance
+  Eigen::MatrixXd hessian = 4 * scale.variance().hessian + 2 * price * misfit.hessian;
+  hessian.diagonal().array() += ridge * hessian.trace();
+  BoxProgram program(scale.balanced());
+  program.set_hessian(std::move(hessian));
+  const Eigen::VectorXd gradient = 2 * price * (misfit.gradient + misfit.hessian * least.curvature);
+  return least.curvature +
+         program.minimize(gradient, least.bounds.low - least.curvature, least.bounds.high - least.curvature);
+}
+
+// The curvatures that `choose(misfit, price)` returns for the highest price that costs little stretch, or the usual
+// ones.
+template <typename Choose>
+Eigen::VectorXd follow_strokes(const LogScale& scale, const StrokeFit& fit, Eigen::VectorXd usual,
+                               const Choose& choose) {
+  constexpr double prices[] = {16, 4, 1, 0.25, 0.0625};  // of 1 radian^2, in the logarithm of the L2 stretch
+  constexpr double most_growth = 1.1;
+  const auto l2 = [&](const Eigen::VectorXd& curvature) { return scale.predicted_l2(scale.evaluate_held(curvature)); };
+  const double most_l2 = most_growth * l2(usual), missed = fit.misfit(usual);
+  const LogScale::Variance form = fit.form_near(usual);
+  for (const double price : prices) {
+    Eigen::VectorXd found = choose(form, price);
+    if (fit.misfit(found) < missed && l2(found) <= most_l2) return found;
+  }
+  return usual;
 }
 
 // If it is a number worth comparing.
@@ -243,7 +282,7 @@ void require_possible(const MetricMesh& surface, const ComponentCones& cones, co
 }
 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings) {
+                    std::vector<Finding>& findings, const TextureDirections* strokes) {
   const HalfedgeMesh& mesh = system.mesh();
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
@@ -251,6 +290,7 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   require_feasible(mesh, asked, border);
   const LogScale& scale = system.log_scale();
 
+  std::optional<StrokeFit> fit;
   Eigen::VectorXd curvature(asked.vertices.size());
   if (asked.vertices.empty()) {
     // A closed torus or a surface with boundary: flat everywhere.
@@ -261,11 +301,29 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);
   } else {
-    curvature = least_distortion(mesh, asked, scale);
-    if (rule == PrescriptionRule::straightness) curvature = straightness(system, asked, curvature, findings);
+    LeastDistortion least = least_distortion(mesh, asked, scale);
+    if (rule == PrescriptionRule::straightness) {
+      curvature = straightness(system, asked, least.curvature, findings);
+    } else {
+      curvature = least.curvature;
+      if (strokes != nullptr) {
+        fit.emplace(fit_of_curvature(scale, system.all_cuts(), *strokes, asked.rotation_order));
+        if (asked.rotation_order == 0) {
+          curvature = follow_strokes(scale, *fit, least.curvature, [&](const LogScale::Variance& form, double price) {
+            return toward_strokes(least, scale, form, price);
+          });
+        }
+      }
+    }
   }
   if (asked.rotation_order > 0) {
-    curvature = quantize_curvature(mesh, asked, scale, curvature, asked.rotation_order);
+    const Eigen::VectorXd wanted = curvature;
+    curvature = quantize_curvature(mesh, asked, scale, wanted, asked.rotation_order);
+    if (fit) {
+      curvature = follow_strokes(scale, *fit, curvature, [&](const LogScale::Variance& form, double price) {
+        return quantize_curvature(mesh, asked, scale, wanted, asked.rotation_order, PricedForm{form, price});
+      });
+    }
   } else if (border.balanced && curvature.size() > 0) {
     curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }

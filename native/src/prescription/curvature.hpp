@@ -62,13 +62,14 @@ struct Curvature {
 };
 
 class ComponentSystem;
+struct TextureDirections;
 
 BorderConditions border_conditions(const MetricMesh& surface, const ComponentCones& cones);
 
-// cones: those of the system. Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's
-// own vertex numbers.
+// cones: those of the system.  strokes: which automatic angles follow where that costs little, or null. Throws
+// TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's own vertex numbers.
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings);
+                    std::vector<Finding>& findings, const TextureDirections* strokes = nullptr);
 
 // The same with the cones' curvatures given, and the log scale that they make, (n) and 0 where held. Throws
 // LOOP_TURNING.

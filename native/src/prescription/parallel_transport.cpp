@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "prescription/parallel_transport.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 
 #include "base/checkpoint.hpp"
 #include "prescription/quantize_curvature.hpp"
+#include "prescription/stroke_fit.hpp"
 #include "unfold/frames.hpp"
 #include "unfold/jacobians.hpp"
 
@@ -67,16 +70,40 @@ Eigen::VectorXd round_by_energy(const Eigen::MatrixXd& form, const Eigen::Vector
   return x;
 }
 
+// A price of turning loops about handles by x radians: x^T form x + 2 gradient . x.
+struct TurningPrice {
+  Eigen::MatrixXd form;
+  Eigen::VectorXd gradient;
+};
+
+// The energy of the twist, and what strokes miss by it.  frames: (m) of the metric.
+TurningPrice price_of_turning(const CutSurface& surface, const HarmonicOneForm& twist, const Eigen::MatrixXd& loops,
+                              const Eigen::VectorXd& frames, const TextureDirections* directions, double unit) {
+  constexpr double price_of_misfit = 10;  // of 1 radian^2, in the energy of the twist
+  TurningPrice out{twist.energy(loops), Eigen::VectorXd::Zero(loops.cols())};
+  if (directions == nullptr) return out;
+  const Strokes strokes = sample_strokes(surface.geometry, *directions);
+  Eigen::MatrixXd effect(ssize(strokes.triangles), loops.cols());
+  for (Eigen::Index k = 0; k < loops.cols(); ++k) effect.col(k) = twist.spread(loops.col(k))(strokes.triangles);
+  const StrokeFit fit(strokes.weight, strokes.angle + frames(strokes.triangles), std::move(effect), unit);
+  const LogScale::Variance misfit = fit.form_near(Eigen::VectorXd::Zero(loops.cols()));
+  out.form += price_of_misfit * misfit.hessian;
+  out.gradient += price_of_misfit * misfit.gradient;
+  return out;
+}
+
 // By how much the loops about handles turn otherwise than in the metric, radians, for rotations that are multiples of a
-// unit and twist the frames least.
-Eigen::VectorXd choose_turning(const HarmonicOneForm& twist, const NodeGraph& nodes, const Eigen::VectorXd& natural,
-                               const Eigen::MatrixXd& loops, double unit) {
-  Eigen::VectorXd exact(loops.cols());
+// unit and have the lowest price.
+Eigen::VectorXd choose_turning(const TurningPrice& price, const NodeGraph& nodes, const Eigen::VectorXd& natural,
+                               double unit) {
+  Eigen::VectorXd exact(price.gradient.size());
   Eigen::Index k = 0;
   for (Eigen::Index p = 0; p < natural.size(); ++p) {
     if (!nodes.in_tree[p]) exact[k++] = natural[p] / unit;
   }
-  return unit * (round_by_energy(twist.energy(loops), exact) - exact);
+  Eigen::VectorXd wanted = exact;
+  if (!price.gradient.isZero(0)) wanted -= price.form.ldlt().solve(price.gradient) / unit;
+  return unit * (round_by_energy(price.form, wanted) - exact);
 }
 
 Eigen::VectorXd integrate(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
@@ -117,7 +144,7 @@ struct MetricConnection {
 }  // namespace
 
 ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature,
-                                                 int rotation_order)
+                                                 int rotation_order, const TextureDirections* strokes)
     : surface_(surface), rotation_order_(rotation_order) {
   if (surface.mesh.genus == 0) return;
   const MetricConnection metric(surface, curvature);
@@ -127,7 +154,9 @@ ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, cons
   if (rotation_order == 0 && !flat) return;
   const Eigen::MatrixXd loops = loop_changes(metric.nodes);
   const HarmonicOneForm twist(surface, surface.cut_graph);
-  change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : rotation_order));
+  const double unit = 2 * M_PI / (flat ? 1 : rotation_order);
+  const TurningPrice price = price_of_turning(surface, twist, loops, metric.frames, strokes, unit);
+  change_ = loops * choose_turning(price, metric.nodes, metric.natural, unit);
   twist_ = twist.spread(change_);
 }
 

@@ -8,6 +8,7 @@
 #include "prescription/curvature.hpp"
 #include "transitions/holonomy.hpp"
 #include "transitions/transitions.hpp"
+#include "unfold/texture_direction.hpp"
 
 namespace lsgp {
 
@@ -21,7 +22,9 @@ struct ParallelTransport {
 // the metric's frames least.
 class ParallelTransportChoice {
  public:
-  ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int rotation_order);
+  // strokes: which rotations about handles follow where that twists the frames little, or null.
+  ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int rotation_order,
+                          const TextureDirections* strokes = nullptr);
 
   // Whether rotations about handles differ from the metric's.
   bool is_twisted() const { return twist_.size() > 0; }

@@ -115,7 +115,8 @@ int turns_of(double angle, int rotation_order) {
 }
 
 Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
-                                   const Eigen::VectorXd& wanted, int rotation_order) {
+                                   const Eigen::VectorXd& wanted, int rotation_order,
+                                   const std::optional<PricedForm>& priced) {
   const Eigen::Index k = wanted.size();
   if (k == 0) return wanted;
   TurnBounds widest = widest_bounds(mesh, cones, rotation_order);
@@ -131,7 +132,11 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
   }
   const bool keeps_sum = required.has_value();
   const auto reachable = [&](const TurnBounds& bounds) { return !keeps_sum || reaches(bounds, *required); };
-  const LogScale::Variance variance = scale.variance();
+  LogScale::Variance cost = scale.variance();
+  if (priced) {  // the logarithm of the L2 stretch is about twice the variance
+    cost.hessian += priced->price / 2 * priced->form.hessian;
+    cost.gradient += priced->price / 2 * priced->form.gradient;
+  }
   std::optional<TurnExchange> best;
   double least = std::numeric_limits<double>::infinity();
   const auto search = [&](const TurnBounds& bounds) {
@@ -139,11 +144,13 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     for (Eigen::Index i = 0; i < k; ++i) {
       turns[i] = std::clamp(turns_of(wanted[i], rotation_order), bounds.low[i], bounds.high[i]);
     }
-    TurnExchange exchange(mesh, variance, bounds, rotation_order, std::move(turns));
+    TurnExchange exchange(mesh, cost, bounds, rotation_order, std::move(turns));
     if (keeps_sum) exchange.reach(*required);
     exchange.leave_impossible(keeps_sum);
     exchange.search(keeps_sum);
-    const double stretch = scale.lumped_l2(scale.evaluate(exchange.curvature()));
+    const Eigen::VectorXd curvature = exchange.curvature();
+    double stretch = scale.lumped_l2(scale.evaluate(curvature));
+    if (priced) stretch *= std::exp(priced->at(curvature));
     if (best && !(stretch < least)) return;
     least = stretch;
     best = std::move(exchange);
@@ -153,7 +160,7 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     if (reachable(bounds)) search(bounds);
   }
   if (!best) search(widest);
-  best->refine(scale, keeps_sum);
+  if (!priced) best->refine(scale, keeps_sum);  // which knows stretch alone
   if (is_torus(mesh) && is_impossible_on_torus(best->turns(), rotation_order)) {
     throw Error(Code::seamless_impossible,
                 concat("No torus has just one cone of ", 360 - 360 / rotation_order, " and one of ",
