@@ -53,6 +53,17 @@ class DirectionProperty:
     )
 
 
+class StrokesProperty:
+    """Mix-in: whether automatic angles are chosen for what is drawn."""
+
+    follow_strokes: bpy.props.BoolProperty(
+        name="Follow Strokes",
+        description="Choose automatic cone angles so that the texture follows what is drawn for Texture Up, at up to a "
+        "tenth of stretch",
+        default=True,
+    )
+
+
 class TileProperties:
     """Mix-in: how large the tiles of a seamless layout are."""
 

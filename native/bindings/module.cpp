@@ -270,6 +270,7 @@ lsgp::Options to_options(const py::dict& values) {
   options.compact = choose<Compactness>(
       text("compact"), {{"off", Compactness::off}, {"sparing", Compactness::sparing}, {"full", Compactness::full}});
   options.mirrored_cuts = values["mirrored_cuts"].cast<bool>();
+  options.follow_strokes = values["follow_strokes"].cast<bool>();
   options.square_share = values["square_share"].cast<double>();
   options.factorization = choose<Factorization>(
       text("factorization"),
@@ -534,6 +535,7 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
     const auto numbers = values["mirror"].cast<std::array<double, 6>>();
     options.mirror = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
   }
+  options.follow_strokes = values["follow_strokes"].cast<bool>();
   options.seams = to_seam_mode(values["seams"].cast<std::string>());
   options.threads = values["threads"].cast<int>();
   return options;

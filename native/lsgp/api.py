@@ -284,6 +284,7 @@ def place_cones(
     prefer_sharp: bool = False,
     symmetric: bool = False,
     mirror: tuple[ArrayLike, ArrayLike] | None = None,
+    follow_strokes: bool = True,
     seams: SeamMode = "follow",
     threads: int = 0,
     progress: Progress | None = None,
@@ -303,6 +304,7 @@ def place_cones(
     symmetric: the same cones on both sides of a plane, given by `mirror`, a point on it and its normal, or, if that is
         None, detected; also on surfaces that are symmetric only up to 2 % of their extent, and on components that
         mirror each other.
+    follow_strokes: angles are chosen for several directions, as in `Options`.
     seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
         component that gets cones is not opened along its seams. threads: as in `Options`.
     If the surface has cut_costs, cones are placed where cuts reach them cheaply, provided that the stretch stays within
@@ -328,6 +330,7 @@ def place_cones(
         "prefer_sharp": arguments.flag("prefer_sharp", prefer_sharp),
         "symmetric": arguments.flag("symmetric", symmetric),
         "mirror": None if mirror is None else _mirror_numbers(mirror),
+        "follow_strokes": arguments.flag("follow_strokes", follow_strokes),
         "seams": seams,
         "threads": thread_count(threads),
     }

@@ -116,6 +116,9 @@ class Options:
     mirrored_cuts: cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and
         that costs at most half as much again; so are islands that are split or made compact, if that adds few cuts.
         CUTS_NOT_MIRRORED names those that are not.
+    follow_strokes: automatic cone angles, and in seamless layouts rotations about handles, are chosen so that the
+        texture follows several directions of the surface, if these are strokes, on up to half of a component's area,
+        and if their mean error becomes smaller by 0.01 radians or more, at up to a tenth of L2 stretch.
     square_share: with compact, the area available to these islands, 1 being a whole square: less if other surfaces are
         packed beside them, so that they are cut less; the number of UDIM tiles, up to 100, so that all are filled.
     factorization: how linear systems are solved; maps differ only by rounding. "cut" factors once and leaves dense
@@ -142,6 +145,7 @@ class Options:
     overlaps: Overlaps = "keep"
     compact: Compactness = "off"
     mirrored_cuts: bool = False
+    follow_strokes: bool = True
     square_share: float = 1.0
     factorization: Factorization = "automatic"
     threads: int = 0
@@ -156,6 +160,7 @@ class Options:
         set_field(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         set_field(self, "straighten", arguments.flag("straighten", self.straighten))
         set_field(self, "mirrored_cuts", arguments.flag("mirrored_cuts", self.mirrored_cuts))
+        set_field(self, "follow_strokes", arguments.flag("follow_strokes", self.follow_strokes))
         set_field(self, "repair", arguments.flag("repair", self.repair))
         share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 100")
         set_field(self, "square_share", share)

@@ -125,6 +125,14 @@ def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     )
 
 
+def has_strokes(surface: Surface) -> bool:
+    """Whether several triangles have a direction of the texture, but not all."""
+    if surface.directions is None:
+        return False
+    directed = np.count_nonzero(surface.directions.any(axis=1))
+    return bool(1 < directed < len(surface.triangles))
+
+
 def _directions(directions: ArrayLike, triangle_count: int) -> FloatArray:
     """One for each triangle."""
     if arguments.as_array("directions", directions).ndim != 1:

@@ -40,6 +40,7 @@ def command_faults(
         square_share=1.0,
         straighten=False,
         mirrored_cuts=False,
+        follow_strokes=True,
         threads=0,
     )
     surface = replace(surface, edges=None, cut_costs=None, borders=None)

@@ -146,6 +146,7 @@ lsgp::Options make_options(Bytes& bytes, const lsgp::Surface& surface) {
   if (bytes.once_in(4)) options.overlaps = lsgp::Overlaps::split;
   if (bytes.once_in(4)) options.compact = bytes.choice<lsgp::Compactness>(3);
   if (bytes.once_in(4)) options.square_share = bytes.number();
+  options.follow_strokes = !bytes.once_in(4);
   options.factorization = bytes.choice<lsgp::Factorization>(3);
   return options;
 }
@@ -175,6 +176,7 @@ lsgp::PlacementOptions make_placement_options(Bytes& bytes) {
     for (double& x : options.mirror->normal) x = bytes.number();
   }
   options.seams = bytes.choice<lsgp::SeamMode>(3);
+  options.follow_strokes = !bytes.once_in(4);
   return options;
 }
 

@@ -80,6 +80,7 @@ void print(const lsgp::Options& options) {
   print_choice("repair", options.repair);
   print_choice("overlaps", static_cast<int>(options.overlaps));
   print_choice("compact", static_cast<int>(options.compact));
+  print_choice("follow_strokes", options.follow_strokes);
   print_value("square_share", options.square_share);
   print_choice("factorization", static_cast<int>(options.factorization));
 }
@@ -103,4 +104,5 @@ void print(const lsgp::PlacementOptions& options) {
     print_rows("mirror_normal", options.mirror->normal.transpose());
   }
   print_choice("seams", static_cast<int>(options.seams));
+  print_choice("follow_strokes", options.follow_strokes);
 }

@@ -17,6 +17,7 @@ from ...core.choices import (
     Choices,
     DirectionProperty,
     PresetProperty,
+    StrokesProperty,
     TextureProperties,
     enum_items,
 )
@@ -69,6 +70,7 @@ class UV_OT_cone_auto_unwrap(
     PresetProperty,
     TextureProperties,
     DirectionProperty,
+    StrokesProperty,
     TileSizeProperties,
     FeatureProperties,
     BackgroundOperator,
@@ -224,6 +226,7 @@ class UV_OT_cone_auto_unwrap(
             if self.preset != "TILE":
                 body.prop(self, "compact")
             body.prop(self, "symmetric")
+            body.prop(self, "follow_strokes")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
@@ -298,6 +301,7 @@ class UV_OT_cone_auto_unwrap(
             seams=SEAMS[self.seams][0],
             straighten=options.straighten and self.straighten,
             compact=options.compact if self.compact else "off",
+            follow_strokes=self.follow_strokes,
             square_share=float(self.udim),
             threads=chosen_threads(),
         )

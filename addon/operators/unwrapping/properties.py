@@ -4,7 +4,7 @@
 import bpy
 
 from ...core import native
-from ...core.choices import Choices, DirectionProperty, enum_items
+from ...core.choices import Choices, DirectionProperty, StrokesProperty, enum_items
 from ...core.preferences import chosen_threads
 from ...jobs.layouts.maps import PackSettings
 from ...jobs.tasks.unwrapping import UnwrapSettings
@@ -41,7 +41,7 @@ MARGIN_METHODS = (
 )
 
 
-class UnwrapProperties(DirectionProperty):
+class UnwrapProperties(DirectionProperty, StrokesProperty):
     """Mix-in: how to unwrap and where to put the islands."""
 
     prescription: bpy.props.EnumProperty(
@@ -98,6 +98,7 @@ class UnwrapProperties(DirectionProperty):
     def draw_placement(self, layout: bpy.types.UILayout) -> None:
         """The properties that place islands, as far as they have an effect."""
         layout.prop(self, "direction")
+        layout.prop(self, "follow_strokes")
         layout.prop(self, "use_pins")
         if not self.seamless:
             layout.prop(self, "correct_aspect")
@@ -122,6 +123,7 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         stretch=chosen.stretch,
         repair=chosen.repair,
         overlaps=OVERLAPS[chosen.overlaps][0],
+        follow_strokes=chosen.follow_strokes,
         threads=chosen_threads(),
     )
     return UnwrapSettings(

@@ -27,6 +27,7 @@ struct PlacementOptions {
   bool prefer_sharp = false;          // prefer sharp corners to smooth regions if that costs little
   bool symmetric = false;             // the same cones on both sides of a mirror plane
   std::optional<MirrorPlane> mirror;  // none: detected for every component
+  bool follow_strokes = true;         // as in Options
   SeamMode seams = SeamMode::follow;  // a component that gets cones is not opened along its seams
   int threads = 0;                    // as in Options
 };

@@ -20,12 +20,18 @@ from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
 from ..layouts.texels import TexelLayout, at_texel_density, with_tiny_findings
 from ..options import Options, Seamless
 from ..results import Result
-from ..surface import Pins, Surface
+from ..surface import Pins, Surface, has_strokes
 from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
 from .completed_cones import TARGET, CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
 from .cone_choices import best_map, follows_features, possible_cones
-from .map_comparison import fills_badly, may_replace_undivided
+from .map_comparison import (
+    LEAST_DIRECTION_ERROR,
+    direction_error,
+    fills_badly,
+    follows_strokes_better,
+    may_replace_undivided,
+)
 
 Preset = Literal["paint", "tile", "bake"]
 
@@ -149,14 +155,17 @@ def auto_unwrap(
     is_free = arguments.flag("symmetric", symmetric) and count is None
     solvers = Solvers()
 
-    def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-        solver = solvers.of(opened)
-        found = possible_cones(solver, given, chosen, is_free, share_of(share, 0.0, PLACING))
-        return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
+    def mapped(options: Options, progress: Progress | None) -> Mapped:
+        def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
+            solver = solvers.of(opened)
+            found = possible_cones(solver, given, options, is_free, share_of(share, 0.0, PLACING))
+            return best_map(solver, found, options, pins, share_of(share, PLACING, 1.0))
+
+        return best_at_creases(choices, options, make, progress)
 
     with packing_once():
         mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
-        found = best_at_creases(choices, chosen, make, mapping)
+        found = best_for_strokes(surface, chosen, mapped, mapping)
         surface, result = found[0], found[2]
         if pins is None:
             result = best_division(found, chosen, solvers, share_of(mapping, 1.0, 1.0))
@@ -276,6 +285,28 @@ def best_at_creases(
     if progress is not None:
         progress(1.0)  # maps that were not needed leave their time
     return best
+
+
+def best_for_strokes(
+    surface: Surface,
+    options: Options,
+    mapped: Callable[[Options, Progress | None], Mapped],
+    progress: Progress | None = None,
+) -> Mapped:
+    """The map with angles of least distortion, or one that follows the surface's strokes where it gains by that.
+
+    mapped: the map with some options. progress, errors: of `mapped`.
+    """
+    if not (options.follow_strokes and has_strokes(surface)):
+        return mapped(options, progress)
+    usual = mapped(replace(options, follow_strokes=False), share_of(progress, 0.0, _TRYING))
+    if direction_error(usual[2]) > LEAST_DIRECTION_ERROR:
+        toward = or_none(partial(mapped, options, share_of(progress, _TRYING, 1.0)))
+        if toward is not None and follows_strokes_better(toward[2], usual[2]):
+            return toward
+    if progress is not None:
+        progress(1.0)
+    return usual
 
 
 def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: Progress | None = None) -> Result:

@@ -184,6 +184,7 @@ def _place(
         target=given.target,
         lattice=lattice,
         symmetric=symmetric,
+        follow_strokes=options.follow_strokes,
         seams=options.seams,
         threads=options.threads,
         progress=progress,

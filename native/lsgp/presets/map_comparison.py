@@ -61,6 +61,9 @@ _FEATURES_FOR_TILES = 0.25
 # in common with them, and those along it are worth half.
 _FEATURES_IN_COMMON = 0.75
 _WORTH_WITHOUT_DIRECTION = 0.5
+# The same for strokes, and the mean angle to them that is worth another map, radians.
+_MOST_L2_FOR_STROKES = 1.1
+LEAST_DIRECTION_ERROR = 0.01
 # Of the length of an edge along an axis.
 _ROUNDING = 1e-6
 
@@ -198,6 +201,21 @@ def may_replace_straighter(straighter: Result, usual: Result) -> bool:
         and island_count(straighter) <= island_count(usual)
         and gain > max(0.0, _FEATURES_FOR_STRETCH * cost)
     )
+
+
+def follows_strokes_better(toward: Result, usual: Result) -> bool:
+    """Whether a map whose angles are chosen for the surface's directions is nearer to them by 0.01 radians or more, at
+    up to a tenth more of L2 stretch, and without further islands or defects."""
+    return (
+        is_as_good(toward, usual, _MOST_L2_FOR_STROKES * usual.distortion.l2_stretch)
+        and island_count(toward) <= island_count(usual)
+        and direction_error(toward) < direction_error(usual) - LEAST_DIRECTION_ERROR
+    )
+
+
+def direction_error(result: Result) -> float:
+    """The mean angle to the surface's directions, radians; 0 without any."""
+    return result.direction_error or 0.0
 
 
 def has_direction(share: FloatArray | float) -> NDArray[np.bool_] | bool:

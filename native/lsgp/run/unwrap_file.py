@@ -29,9 +29,11 @@ from ..presets.auto_unwrap import (
     PACKING,
     PLACING,
     CreaseChoices,
+    Mapped,
     Solvers,
     best_at_creases,
     best_division,
+    best_for_strokes,
     crease_choices,
 )
 from ..presets.completed_cones import CompletedCones, GivenCones
@@ -239,15 +241,18 @@ def _map(
 
     solvers = Solvers()
 
-    def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-        with run.stage("place_cones"):
-            solver = solvers.of(opened)
-            placing = share_of(share, 0.0, PLACING)
-            found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
-        completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
-        run.add_seconds(result.stage_seconds)
-        return completed, result
+    def mapped_with(options: Options, progress: Progress | None) -> Mapped:
+        def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
+            with run.stage("place_cones"):
+                solver = solvers.of(opened)
+                placing = share_of(share, 0.0, PLACING)
+                found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
+            completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
+            run.add_seconds(result.stage_seconds)
+            return completed, result
 
-    mapped = best_at_creases(choices, options, make, progress)
+        return best_at_creases(choices, options, make, progress)
+
+    mapped = best_for_strokes(surface, options, mapped_with, progress)
     run.surface, run.placement = mapped[0], mapped[1].placement
     return file, best_division(mapped, options, solvers, share_of(progress, 1.0, 1.0))

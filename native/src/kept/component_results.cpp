@@ -27,12 +27,12 @@ bool is_same_lattice(const Seamless& a, const Seamless& b) {
 // islands fill a square; the number of threads does not matter, and the task says which cuts are symmetric.
 bool has_same_maps(const Options& a, const Options& b) {
   const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
-               overlaps, compact, mirrored_cuts, square_share, factorization, threads] = a;
+               overlaps, compact, mirrored_cuts, follow_strokes, square_share, factorization, threads] = a;
   return prescription == b.prescription && unfold == b.unfold && method == b.method && seams == b.seams &&
          border == b.border && loop_turning == b.loop_turning && seamless.has_value() == b.seamless.has_value() &&
          (seamless ? is_same_lattice(*seamless, *b.seamless) : straighten == b.straighten) && mode == b.mode &&
-         stretch == b.stretch && repair == b.repair && overlaps == b.overlaps && factorization == b.factorization &&
-         (!seamless || (compact == b.compact && square_share == b.square_share));
+         stretch == b.stretch && follow_strokes == b.follow_strokes && repair == b.repair && overlaps == b.overlaps &&
+         factorization == b.factorization && (!seamless || (compact == b.compact && square_share == b.square_share));
 }
 
 bool has_same_features(const Options& a, const Options& b) {
@@ -47,8 +47,7 @@ bool is_same(const ComponentCones& a, const ComponentCones& b) {
 }
 
 bool is_same(const ComponentTask& a, const ComponentTask& b) {
-  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders,
-               follows_strokes] = a;
+  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders, follows_strokes] = a;
   return is_same(cones, b.cones) && border_cones == b.border_cones && pinned_corners == b.pinned_corners &&
          is_equal(importance, b.importance) && is_equal(directions.along_first, b.directions.along_first) &&
          is_equal(directions.along_last, b.directions.along_last) && is_equal(directions.weight, b.directions.weight) &&
@@ -57,10 +56,11 @@ bool is_same(const ComponentTask& a, const ComponentTask& b) {
 
 // Images say what is symmetric.
 bool is_same(const PlacementInput& a, const PlacementInput& b) {
-  const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, seams, threads] = a.options;
+  const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, threads] = a.options;
   return is_same(a.existing, b.existing) && a.allowed == b.allowed && a.mirrored == b.mirrored &&
          is_equal(a.directions, b.directions) && count == b.options.count && target == b.options.target &&
-         lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp && seams == b.options.seams;
+         lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp &&
+         follow_strokes == b.options.follow_strokes && seams == b.options.seams;
 }
 
 template <typename Entry>

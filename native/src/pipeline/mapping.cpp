@@ -328,8 +328,8 @@ bool Mapping::may_follow_strokes() const {
   const bool chooses_angles = options_.prescription == PrescriptionRule::least_distortion ||
                               (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
   const bool chooses_rotations = task_.cones.rotation_order > 0 && system_.mesh().genus > 0;
-  return repairs_ && (chooses_angles || chooses_rotations) && task_.pinned_corners.size() < 2 &&
-         are_strokes(task_.directions, system_.geometry());
+  return repairs_ && options_.follow_strokes && (chooses_angles || chooses_rotations) &&
+         task_.pinned_corners.size() < 2 && are_strokes(task_.directions, system_.geometry());
 }
 
 double Mapping::misalignment(const ComponentMap& map) const {

@@ -313,6 +313,7 @@ CHANGES: dict[str, list[object]] = {
     "overlaps": ["keep", "split"],
     "compact": ["off", "full"],
     "mirrored_cuts": [False, True],
+    "follow_strokes": [True, False],
     "factorization": ["automatic", "cut", "sparse"],
     "loop_turning": [{}, {0: 2 * np.pi}],
 }
