@@ -47,11 +47,11 @@ bool is_same(const ComponentCones& a, const ComponentCones& b) {
 }
 
 bool is_same(const ComponentTask& a, const ComponentTask& b) {
-  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders, follows_strokes] = a;
+  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders, strokes_price] = a;
   return is_same(cones, b.cones) && border_cones == b.border_cones && pinned_corners == b.pinned_corners &&
          is_equal(importance, b.importance) && is_equal(directions.along_first, b.directions.along_first) &&
          is_equal(directions.along_last, b.directions.along_last) && is_equal(directions.weight, b.directions.weight) &&
-         has_directed_borders == b.has_directed_borders && follows_strokes == b.follows_strokes;
+         has_directed_borders == b.has_directed_borders && strokes_price == b.strokes_price;
 }
 
 // Images say what is symmetric.

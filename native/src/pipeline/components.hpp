@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/array.hpp"
@@ -11,6 +12,7 @@
 #include "lsgp/result.hpp"
 #include "mesh/topology.hpp"
 #include "prescription/curvature.hpp"
+#include "prescription/stroke_fit.hpp"
 #include "unfold/texture_direction.hpp"
 
 namespace lsgp {
@@ -23,10 +25,13 @@ struct ComponentTask {
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
   bool has_directed_borders = false;                // whose turning follows directions, not the surface
-  bool follows_strokes = false;                     // whether angles and rotations are chosen for directions, too
+  std::optional<double> strokes_price;              // of missing directions in choices; none: they have no effect
 
-  // Those that choices follow, or null.
-  const TextureDirections* strokes() const { return follows_strokes ? &directions : nullptr; }
+  // What choices follow, or none.
+  std::optional<FollowedStrokes> strokes() const {
+    if (!strokes_price) return std::nullopt;
+    return FollowedStrokes{directions, *strokes_price};
+  }
 };
 
 // A surface's components and the task of each.

@@ -103,6 +103,7 @@ class Mapping {
   void map_flat_metric(FoundMap& found);
   // Automatic angles and rotations about handles chosen for strokes, if the map gains by it.
   bool may_follow_strokes() const;
+  bool may_turn_handles() const { return task_.cones.rotation_order > 0 && system_.mesh().genus > 0; }
   void follow_strokes(FoundMap& found);
   double misalignment(const ComponentMap& map) const;
   // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
@@ -262,7 +263,8 @@ void Mapping::prescribe_angles(ComponentSystem& system, const ComponentTask& tas
   const ProgressMonitor::Interval interval(monitor_, 0, 0.2);
   monitor_.advance(0);
   found.map.holes = task.cones.holes;
-  found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings, task.strokes());
+  found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings,
+                                  task.strokes_price ? &task.directions : nullptr);
 }
 
 void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map) {
@@ -327,8 +329,7 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
 bool Mapping::may_follow_strokes() const {
   const bool chooses_angles = options_.prescription == PrescriptionRule::least_distortion ||
                               (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
-  const bool chooses_rotations = task_.cones.rotation_order > 0 && system_.mesh().genus > 0;
-  return repairs_ && options_.follow_strokes && (chooses_angles || chooses_rotations) &&
+  return repairs_ && options_.follow_strokes && (chooses_angles || may_turn_handles()) &&
          task_.pinned_corners.size() < 2 && are_strokes(task_.directions, system_.geometry());
 }
 
@@ -338,17 +339,22 @@ double Mapping::misalignment(const ComponentMap& map) const {
 }
 
 void Mapping::follow_strokes(FoundMap& found) {
+  constexpr double prices[] = {200, 40, 10};  // of what rotations about handles miss
+  const DirectedMap usual{l2_of(found.map), misalignment(found.map)};
   ComponentTask toward = task_;
-  toward.follows_strokes = true;
-  Array<Eigen::VectorXd> untried;
-  try {
-    FoundMap tried = std::move(*attempt(system_, toward, Effort::local, untried));
-    if (tried.defects() > 0) return;
-    if (is_worth_strokes({l2_of(tried.map), misalignment(tried.map)}, {l2_of(found.map), misalignment(found.map)})) {
-      found = std::move(tried);
+  for (const double price : prices) {
+    toward.strokes_price = price;
+    Array<Eigen::VectorXd> untried;
+    try {
+      FoundMap tried = std::move(*attempt(system_, toward, Effort::local, untried));
+      if (tried.defects() == 0 && is_worth_strokes({l2_of(tried.map), misalignment(tried.map)}, usual)) {
+        found = std::move(tried);
+        return;
+      }
+    } catch (const Error& error) {
+      if (error.code() != Code::solver_failed) throw;
     }
-  } catch (const Error& error) {
-    if (error.code() != Code::solver_failed) throw;
+    if (!may_turn_handles()) return;  // other prices have no effect
   }
 }
 

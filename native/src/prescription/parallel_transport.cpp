@@ -7,7 +7,6 @@
 
 #include "base/checkpoint.hpp"
 #include "prescription/quantize_curvature.hpp"
-#include "prescription/stroke_fit.hpp"
 #include "unfold/frames.hpp"
 #include "unfold/jacobians.hpp"
 
@@ -78,17 +77,17 @@ struct TurningPrice {
 
 // The energy of the twist, and what strokes miss by it.  frames: (m) of the metric.
 TurningPrice price_of_turning(const CutSurface& surface, const HarmonicOneForm& twist, const Eigen::MatrixXd& loops,
-                              const Eigen::VectorXd& frames, const TextureDirections* directions, double unit) {
-  constexpr double price_of_misfit = 10;  // of 1 radian^2, in the energy of the twist
+                              const Eigen::VectorXd& frames, const std::optional<FollowedStrokes>& followed,
+                              double unit) {
   TurningPrice out{twist.energy(loops), Eigen::VectorXd::Zero(loops.cols())};
-  if (directions == nullptr) return out;
-  const Strokes strokes = sample_strokes(surface.geometry, *directions);
+  if (!followed) return out;
+  const Strokes strokes = sample_strokes(surface.geometry, followed->directions);
   Eigen::MatrixXd effect(ssize(strokes.triangles), loops.cols());
   for (Eigen::Index k = 0; k < loops.cols(); ++k) effect.col(k) = twist.spread(loops.col(k))(strokes.triangles);
   const StrokeFit fit(strokes.weight, strokes.angle + frames(strokes.triangles), std::move(effect), unit);
   const LogScale::Variance misfit = fit.form_near(Eigen::VectorXd::Zero(loops.cols()));
-  out.form += price_of_misfit * misfit.hessian;
-  out.gradient += price_of_misfit * misfit.gradient;
+  out.form += followed->price * misfit.hessian;
+  out.gradient += followed->price * misfit.gradient;
   return out;
 }
 
@@ -144,7 +143,7 @@ struct MetricConnection {
 }  // namespace
 
 ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature,
-                                                 int rotation_order, const TextureDirections* strokes)
+                                                 int rotation_order, const std::optional<FollowedStrokes>& strokes)
     : surface_(surface), rotation_order_(rotation_order) {
   if (surface.mesh.genus == 0) return;
   const MetricConnection metric(surface, curvature);

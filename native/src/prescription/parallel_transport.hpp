@@ -3,12 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "cut/cut_mesh.hpp"
 #include "prescription/curvature.hpp"
+#include "prescription/stroke_fit.hpp"
 #include "transitions/holonomy.hpp"
 #include "transitions/transitions.hpp"
-#include "unfold/texture_direction.hpp"
 
 namespace lsgp {
 
@@ -22,9 +23,9 @@ struct ParallelTransport {
 // the metric's frames least.
 class ParallelTransportChoice {
  public:
-  // strokes: which rotations about handles follow where that twists the frames little, or null.
+  // strokes: which rotations about handles follow, as far as their price is worth the twist.
   ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int rotation_order,
-                          const TextureDirections* strokes = nullptr);
+                          const std::optional<FollowedStrokes>& strokes = std::nullopt);
 
   // Whether rotations about handles differ from the metric's.
   bool is_twisted() const { return twist_.size() > 0; }

@@ -13,8 +13,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double largest_part = 0.5;   // of the area, for strokes
-constexpr Index most_samples = 256;  // that represent them
+constexpr double largest_part = 0.5;  // of the area, for strokes
+constexpr Index most_samples = 256;   // that represent them
 
 Complex edge_in_frame(const Geometry& geometry, Index h) {
   return std::polar(geometry.length[h], edge_direction(geometry, h));

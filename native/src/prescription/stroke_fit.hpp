@@ -15,6 +15,12 @@ namespace lsgp {
 // everywhere, such as the model's upward direction, only turns it.
 bool are_strokes(const TextureDirections& directions, const Geometry& geometry);
 
+// Strokes that the choice of a map follows.
+struct FollowedStrokes {
+  const TextureDirections& directions;
+  double price;  // of a misfit of 1 radian^2, in the energy of a twist by rotations about handles
+};
+
 // The strokes that represent all of them.
 struct Strokes {
   Array<Index> triangles;
