@@ -108,21 +108,16 @@ struct PlacementRules {
 PlacedCones place_alone(const PlacementTask& task, const Positions& directions, const PlacementRules& rules,
                         std::vector<Finding>& findings) {
   PlacedCones found = place_component(task, rules.options, findings, rules.monitor);
-  if (directions.rows() == 0) return found;
-  if (rules.options.lattice && !rules.options.count) {
-    auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
-    if (beside) found = std::move(*beside);
-  }
-  auto toward = turn_toward_strokes(task, directions, rules.options, found, rules.monitor);
-  return toward ? std::move(*toward) : std::move(found);
+  if (directions.rows() == 0 || !rules.options.lattice || rules.options.count) return found;
+  auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
+  return beside ? std::move(*beside) : std::move(found);
 }
 
-// results: of the component, or null.
-PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
-                     ComponentResults* results, std::vector<Finding>& findings) {
+// The cones without regard to strokes.  results: of the component, or null.
+PlacedCones place_usual(const Component& component, const PlacementTask& task, const Positions& directions,
+                        const PlacementRules& rules, ComponentResults* results, std::vector<Finding>& findings) {
   if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
-  PlacementInput input{task.existing, task.allowed, task.mirrored, {}, rules.options};
-  if (rules.surface.directions.rows() > 0) input.directions = directions_on(component, rules.surface.directions);
+  const PlacementInput input{task.existing, task.allowed, task.mirrored, directions, rules.options};
   PlacedCones placed;
   const PlacementResult* known = results == nullptr ? nullptr : results->find_placement(input);
   if (known != nullptr) {
@@ -130,13 +125,21 @@ PlacedCones place_on(const Component& component, const PlacementTask& task, cons
     findings.insert(findings.end(), known->found.begin(), known->found.end());
   } else {
     const auto before = static_cast<std::ptrdiff_t>(findings.size());
-    placed = place_alone(task, input.directions, rules, findings);
-    if (results != nullptr) {
-      results->keep_placement(std::move(input), {placed, {findings.begin() + before, findings.end()}});
-    }
+    placed = place_alone(task, directions, rules, findings);
+    if (results != nullptr) results->keep_placement(input, {placed, {findings.begin() + before, findings.end()}});
   }
   rules.twins.keep(component, task, placed);
   return placed;
+}
+
+PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
+                     ComponentResults* results, std::vector<Finding>& findings) {
+  Positions directions;
+  if (rules.surface.directions.rows() > 0) directions = directions_on(component, rules.surface.directions);
+  PlacedCones usual = place_usual(component, task, directions, rules, results, findings);
+  if (directions.rows() == 0) return usual;
+  auto toward = turn_toward_strokes(task, directions, rules.options, usual, rules.monitor);
+  return toward ? std::move(*toward) : std::move(usual);
 }
 
 // A vertex has one angle in the result, even if different ones are best on the components that touch there.

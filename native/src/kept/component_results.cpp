@@ -54,13 +54,12 @@ bool is_same(const ComponentTask& a, const ComponentTask& b) {
          has_directed_borders == b.has_directed_borders && strokes_price == b.strokes_price;
 }
 
-// Images say what is symmetric.
+// Images say what is symmetric, and strokes are followed by what was placed without regard to them.
 bool is_same(const PlacementInput& a, const PlacementInput& b) {
   const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, threads] = a.options;
   return is_same(a.existing, b.existing) && a.allowed == b.allowed && a.mirrored == b.mirrored &&
          is_equal(a.directions, b.directions) && count == b.options.count && target == b.options.target &&
-         lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp &&
-         follow_strokes == b.options.follow_strokes && seams == b.options.seams;
+         lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp && seams == b.options.seams;
 }
 
 template <typename Entry>

@@ -147,3 +147,22 @@ def test_a_press_with_strokes_is_never_farther_from_them(preset: str) -> None:
         assert toward.distortion.l2_stretch <= MOST_STRETCH * usual.distortion.l2_stretch
         gained += toward.direction_error < usual.direction_error - LEAST
     assert gained > 0
+
+
+def test_components_that_mirror_each_other_follow_their_own_strokes() -> None:
+    mesh = meshes.bumpy_sphere(3)
+    left = stroked(mesh, 2)
+    mirror = np.array([-1.0, 1.0, 1.0])
+    right = stroked(mesh, 3)
+    surface = lsgp.Surface(
+        np.concatenate([left.positions - [3, 0, 0], (right.positions - [3, 0, 0]) * mirror]),
+        np.concatenate([left.triangles, right.triangles[:, ::-1] + len(mesh.positions)]),
+        directions=np.concatenate([left.directions, right.directions * mirror]),
+    )
+    errors = []
+    for follow in (False, True):
+        placed = lsgp.place_cones(surface, symmetric=True, follow_strokes=follow)
+        result = lsgp.parameterize(surface, placed.cones, placed.cone_angles)
+        errors.append([np.nanmean(half) for half in np.split(result.direction_errors, 2)])
+    assert (np.array(errors[1]) <= np.array(errors[0]) + 1e-9).all()
+    assert np.min(np.array(errors[0]) - errors[1]) > LEAST
