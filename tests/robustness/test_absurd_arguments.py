@@ -93,7 +93,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.place_cones,
         {
             **{"surface": WHOLE, "cones": (), "angles": None, "count": 4, "target": 1.05, "lattice": None},
-            **{"prefer_sharp": False, "symmetric": True, "mirror": ([0, 0, 0], [1, 0, 0]), "seams": "follow"},
+            **{"prefer_sharp": False, "symmetric": True, "mirror": ([0, 0, 0], [1, 0, 0])},
+            **{"follow_strokes": True, "seams": "follow"},
             "threads": 2,
             "progress": None,
         },
