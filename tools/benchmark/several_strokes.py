@@ -4,7 +4,7 @@ follow them, as Markdown.
 
     PYTHONPATH=tests python tools/benchmark/several_strokes.py [FOLDER]
 
-Eight times, two triangles drawn with a fixed seed get random directions in their planes. The angles are measured anew
+Four times, two triangles drawn with a fixed seed get random directions in their planes. The angles are measured anew
 from the coordinates; the table has their means, and the largest ratio of L2 stretches. FOLDER holds OBJ files (default:
 ../shared/meshes); those that are missing are left out. Needs the lsgp wheel and the tests' scipy.
 """
@@ -22,7 +22,7 @@ import numpy as np
 from placement_quality import SHARED
 from texture_direction import angles, models, normal_of, off_by_quarter
 
-TIMES = 8
+TIMES = 4
 STROKES = 2
 
 Unwrap = Callable[[lsgp.Surface, bool], lsgp.Result]
