@@ -75,7 +75,7 @@ def main() -> None:
         "*Paint*": (pressed("paint"), False),
         "*Tile*": (pressed("tile"), True),
     }
-    print("| | " + " | ".join(f"{kind}, turned | followed | L2, at most" for kind in kinds) + " |")
+    print("| | " + " | ".join(f"{kind}, rotated | followed | L2, at most" for kind in kinds) + " |")
     print("|---|" + "--:|" * 9)
     for name, surface in models(parser.parse_args().folder):
         row = [cell for unwrap, in_quarters in kinds.values() for cell in cells(surface, unwrap, in_quarters)]
