@@ -45,6 +45,7 @@ from .api import (
 )
 from .cut_moving import CutMover, GrabbedCut, MovedCut, Transition, overlapping_triangles
 from .cut_paths import split_into_paths
+from .edge_directions import edge_directions
 from .errors import (
     Cancelled,
     CurvatureError,
@@ -137,6 +138,7 @@ __all__ = [
     "correct_aspect",
     "crease_borders",
     "cut_costs",
+    "edge_directions",
     "extract_quads",
     "feature_edges",
     "find_cuts",

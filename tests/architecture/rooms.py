@@ -156,6 +156,7 @@ API = (
     "certificate",
     "cut_moving",
     "cut_paths",
+    "edge_directions",
     "features",
     "indexed_uv",
     "lattice",

@@ -77,10 +77,13 @@ def pairs_in(content: Any, path: Path | None, what: str) -> NDArray[np.int32]:
     return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", what).reshape(-1, 2)
 
 
-def directions_in(content: Any, path: Path, face_count: int) -> NDArray[np.float64]:
-    """(f, 3) the direction at each face by a directions file, those of one face added up.  Raises InputError."""
-    if not _is_list_of(content, lambda row: _is_list_of(row, _is_number) and len(row) == 4 and _is_integer(row[0])):
-        raise _unlike(path, "[[face, x, y, z], ...] with faces counted from 0")
+def directions_in(content: Any, path: Path, face_count: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The strokes of a directions file: (f, 3) the direction at each face, those of one face added up, and (e, 2) the
+    vertices of edges along which v is to run.  Raises InputError."""
+    if not _is_list_of(content, _is_stroke):
+        raise _unlike(path, "[[face, x, y, z] or [vertex, vertex], ...] with faces and vertices counted from 0")
+    edges = pairs_in([row for row in content if len(row) == 2], path, "vertex of a direction")
+    content = [row for row in content if len(row) == 4]
     faces = _indices([row[0] for row in content], "INDEX_OUT_OF_RANGE", "face of a direction")
     outside = faces[(faces < 0) | (faces >= face_count)]
     if len(outside):
@@ -91,7 +94,7 @@ def directions_in(content: Any, path: Path, face_count: int) -> NDArray[np.float
         )
     directions = np.zeros((face_count, 3))
     np.add.at(directions, faces, np.array([[_as_float(x) for x in row[1:]] for row in content]).reshape(-1, 3))
-    return directions
+    return directions, edges
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +225,13 @@ def _parsed(data: bytes, path: Path) -> Any:
         return json.loads(data)
     except (ValueError, RecursionError) as error:
         raise UsageError(f"'{path}' is not valid JSON: {error}") from error
+
+
+def _is_stroke(row: Any) -> bool:
+    """Whether it is the direction at a face or the two vertices of an edge."""
+    if _is_list_of(row, _is_integer) and len(row) == 2:
+        return True
+    return _is_list_of(row, _is_number) and len(row) == 4 and _is_integer(row[0])
 
 
 def _is_list_of(value: Any, accepts: Callable[[Any], bool]) -> bool:

@@ -22,7 +22,7 @@ from ..io.whole_files import write_output
 from ..options import Options, Seamless
 from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh, remesh_to_quads
-from .direction_options import add_direction_options, directions_of_faces, load_directions, require_finite_up
+from .direction_options import add_direction_options, load_directions, require_finite_up, strokes_of
 from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
 from .unwrap_options import (
@@ -108,8 +108,8 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     density = None if args.density is None else load_density(Path(args.density))
     file = read_file(args.input, run, args.format, stitch=stitches(args))
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
-    surface, of_faces = file.surface(), directions_of_faces(args, directions_json, file)
-    directions = args.up if of_faces is None else of_faces[file.triangulation.polygon]
+    surface, strokes = file.surface(), strokes_of(args, directions_json, file)
+    directions = args.up if strokes is None else strokes.directions
     surface = replace(surface, directions=directions, features=features_of(args.features, surface))
     with run.stage("remesh_to_quads"):
         remesh = remesh_to_quads(

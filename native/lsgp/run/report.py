@@ -252,34 +252,30 @@ def _texel_figures(texels: TexelDensity | None, texture_size: int | None) -> Rep
 
 def _direction_figures(result: Result, run: Run) -> Report | None:
     """Radians; the mean as of `Result.direction_error`. faces, errors: of the faces of a directions file, the largest
-    of their triangles, NaN where a face has no map."""
+    of their triangles; edges, edge_errors: of its edges likewise. NaN where there is no map, and at edges between faces
+    that have directions of their own."""
     if result.direction_error is None:
         return None
     figures = {"mean": result.direction_error, "largest": float(np.nanmax(result.direction_errors))}
-    if run.directed_faces is None:
+    if run.strokes is None:
         return figures
-    return figures | {"faces": run.directed_faces.tolist(), "errors": _errors_of_strokes(result, run).tolist()}
-
-
-def _errors_of_strokes(result: Result, run: Run) -> FloatArray:
-    """(k,) at each of `run.directed_faces`, the largest of its triangles, NaN where it has no map."""
-    errors = np.full(len(np.bincount(run.triangulation.polygon)), np.nan)
-    np.fmax.at(errors, run.triangulation.polygon, result.direction_errors)
-    return errors[run.directed_faces]
+    of_faces, of_edges = np.split(run.strokes.largest(result.direction_errors), [len(run.strokes.faces)])
+    figures |= {"faces": run.strokes.faces.tolist(), "errors": of_faces.tolist()}
+    return figures | {"edges": run.strokes.edges.tolist(), "edge_errors": of_edges.tolist()}
 
 
 def missed_strokes(result: Result, run: Run) -> list[str]:
     """A line for each of the strokes of a directions file that the map misses noticeably, the worst first; those that
     are hardly better are only counted."""
-    if run.directed_faces is None or result.direction_errors is None:
+    if run.strokes is None or result.direction_errors is None:
         return []
-    errors = np.degrees(_errors_of_strokes(result, run))
+    names, errors = run.strokes.names, np.degrees(run.strokes.largest(result.direction_errors))
     missed = np.flatnonzero(errors > _NOTICEABLE)
     if not len(missed):
         return []
     worst = missed[np.argsort(-errors[missed], kind="stable")]
     lines = [f"strokes that the texture misses by more than {_NOTICEABLE} degrees: {len(missed)} of {len(errors)}"]
-    lines += [f"  face {run.directed_faces[k]}: {errors[k]:.2f}" for k in worst[:_MOST_STROKES]]
+    lines += [f"  {names[k]}: {errors[k]:.2f}" for k in worst[:_MOST_STROKES]]
     if len(worst) > _MOST_STROKES:
         lines.append(f"  and {len(worst) - _MOST_STROKES} more, in the report (--report)")
     return lines

@@ -41,7 +41,7 @@ from ..presets.cone_choices import best_map, possible_cones
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
-from .direction_options import directions_of_faces, load_directions
+from .direction_options import Strokes, load_directions, strokes_of
 from .feature_options import features_of
 from .unwrap_options import (
     cone_count,
@@ -86,7 +86,7 @@ class Run:
     triangulation: Triangulation | None = None
     surface: Surface | None = None
     placement: Placement | None = None
-    directed_faces: NDArray[np.intp] | None = None
+    strokes: Strokes | None = None
     packed: Packed | None = None
     texels: TexelDensity | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
@@ -220,10 +220,8 @@ def _map(
             f"'{args.importance}' has {len(importance)} numbers for {len(file.mesh.positions)} vertices. "
             "Give one for each.",
         )
-    directions, of_faces = up_of(args), directions_of_faces(args, directions_json, file)
-    if of_faces is not None:
-        directions = of_faces[file.triangulation.polygon]
-        run.directed_faces = np.flatnonzero(of_faces.any(axis=1))
+    run.strokes = strokes_of(args, directions_json, file)
+    directions = up_of(args) if run.strokes is None else run.strokes.directions
     surface = replace(file.surface(pairs_in(seams_json, seams_path, "seam vertex"), importance), directions=directions)
     surface = replace(surface, features=features_of(args.features, surface))
     with run.stage("cut_costs"):

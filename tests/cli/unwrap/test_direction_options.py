@@ -52,6 +52,57 @@ def test_faces_of_a_directions_file_are_told_one_by_one(lsgp, cube_files: Path) 
     assert done.report()["direction_error"]["largest"] <= 1e-9 and "strokes" not in done.out.replace("strokes.json", "")
 
 
+def written_edge(path: Path, edge: list[int]) -> list[complex]:
+    """The images of an edge, from its first vertex to its second, in the faces of a file beside it."""
+    mesh = read_mesh_file(path, with_uv=True).mesh
+    out = []
+    for start, size in zip(mesh.starts, mesh.sizes, strict=True):
+        corners = mesh.corners[start : start + size].tolist()
+        if set(edge) <= set(corners):
+            first, last = (mesh.corner_uv[start + corners.index(vertex)] @ [1, 1j] for vertex in edge)
+            out.append(complex(last - first))
+    return out
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_v_runs_along_an_edge_of_a_directions_file(lsgp, cube_files: Path, reverse: bool) -> None:
+    mesh = read_mesh_file(cube_files / "cube.obj").mesh
+    edge = mesh.corners[4 * 7 : 4 * 7 + 2].tolist()[:: -1 if reverse else 1]
+    (cube_files / "strokes.json").write_text(json.dumps([edge]))
+    done = lsgp(*UNWRAP, "--directions", "strokes.json")
+    assert done.code == 0, done.err
+    images = written_edge(cube_files / "out.obj", edge)
+    assert images and np.abs(np.angle(np.array(images) / 1j)).max() <= np.radians(0.01)
+    told = done.report()["direction_error"]
+    assert told["edges"] == [edge] and told["edge_errors"][0] <= 1e-9 and told["faces"] == []
+
+
+def test_faces_of_a_directions_file_take_precedence_over_edges(lsgp, cube_files: Path) -> None:
+    mesh = read_mesh_file(cube_files / "cube.obj").mesh
+    corners = mesh.corners.reshape(-1, 4).tolist()
+    edge = corners[7][:2]
+    beside = [face for face, vertices in enumerate(corners) if set(edge) <= set(vertices)]
+    assert len(beside) == 2
+    along = mesh.positions[edge[1]] - mesh.positions[edge[0]]
+    tilted = along + 0.5 * (mesh.positions[corners[beside[0]][2]] - mesh.positions[edge[1]])
+
+    def told(strokes: list[list]) -> tuple[dict, str]:
+        (cube_files / "strokes.json").write_text(json.dumps(strokes))
+        done = lsgp(*UNWRAP, "--directions", "strokes.json")
+        assert done.code == 0, done.err
+        return done.report()["direction_error"], done.out
+
+    of_one, _ = told([[beside[0], *tilted], edge])
+    alone, _ = told([[beside[0], *tilted]])
+    of_both, _ = told([[beside[0], *tilted], [beside[1], *along], edge])
+    assert alone["largest"] <= 1e-9 < of_one["largest"]
+    assert of_one["faces"] == beside[:1] and of_one["edge_errors"][0] > 0.01
+    assert of_both["faces"] == sorted(beside) and of_both["edge_errors"] == [None]
+    a, b = edge
+    _, out = told([[beside[0], *tilted], edge])
+    assert f"  edge {a} {b}: {np.degrees(of_one['edge_errors'][0]):.2f}\n" in out
+
+
 def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Path) -> None:
     def written(*options: object) -> bytes:
         assert lsgp(*UNWRAP, *options).code == 0
@@ -67,7 +118,12 @@ def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Pat
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("{}", "does not have the form [[face, x, y, z], ...]"),
+        ("{}", "does not have the form [[face, x, y, z] or [vertex, vertex], ...]"),
+        ("[[0, 1.0]]", "does not have the form"),
+        ("[[0, 1], [1, 1]]", "There is no edge from vertex 1 to 1"),
+        ("[[0, 97]]", "There is no edge from vertex 0 to 97"),
+        ("[[0, 98]]", "edges holds 98"),
+        ("[[0, 10000000000]]", "A vertex of a direction lies outside the mesh"),
         ("[[0, 1, 2]]", "does not have the form"),
         ("[[0.5, 1, 2, 3]]", "does not have the form"),
         ("[[96, 0, 1, 0]]", "has a direction at face 96, but the mesh has 96 faces"),
