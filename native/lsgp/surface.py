@@ -32,8 +32,8 @@ class Surface(EqualByContent, ShortRepr):
     borders: (b, 2) int32, edges at which surface and texture end, whatever the meaning of seams.
     directions: (m, 3) float64, the desired direction of the texture's v at each triangle, in space: its component in
         the triangle's plane counts, with a weight given by its length, and (0, 0, 0) means none; or (3,), the same for
-        all triangles; None: none; `edge_directions` makes them of edges. Islands are rotated accordingly, which does not change the map;
-        `Result.direction_errors` has the deviations.
+        all triangles; None: none. `edge_directions` has those along edges. Islands are rotated accordingly, which does
+        not change the map; `Result.direction_errors` has the deviations.
     features: (f, 2) int32, edges, also of boundaries, that are to run straight along u or v; `feature_edges` finds
         some. They have precedence over creases that are straightened anyway; `Result.features` has those that do not.
     scale: (n,) float64, 1e-6 to 1e6: the factor by which lengths count at each vertex, that of an edge being the mean

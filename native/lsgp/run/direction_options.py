@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..edge_directions import edge_directions, sides_of_edges
+from ..errors import InputError
 from ..io.mesh_files import MeshFile
 from ..io.side_files import UsageError, directions_in, load_json
 from ..stitching import at_stitched
@@ -77,11 +78,15 @@ def strokes_of(args: argparse.Namespace, content: Any, file: MeshFile) -> Stroke
     polygon, surface, pairs = file.triangulation.polygon, file.surface(), at_stitched(file.stitched, edges)
     at_face = of_faces[polygon]
     has_own = at_face.any(axis=1)
+    try:
+        along = edge_directions(surface, pairs)
+    except InputError as error:
+        raise InputError(error.code, f"'{args.directions}' does not hold directions. {error.message}") from error
     row, triangle, _ = sides_of_edges(surface, pairs)
     follows = ~has_own[triangle]
     faces = np.flatnonzero(of_faces.any(axis=1))
     return Strokes(
-        directions=np.where(has_own[:, None], at_face, edge_directions(surface, pairs)),
+        directions=np.where(has_own[:, None], at_face, along),
         faces=faces,
         edges=edges,
         row=np.concatenate([np.searchsorted(faces, polygon[has_own]), len(faces) + row[follows]]),

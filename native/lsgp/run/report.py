@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arguments import FloatArray
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation

@@ -122,7 +122,7 @@ def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Pat
         ("[[0, 1.0]]", "does not have the form"),
         ("[[0, 1], [1, 1]]", "There is no edge from vertex 1 to 1"),
         ("[[0, 97]]", "There is no edge from vertex 0 to 97"),
-        ("[[0, 98]]", "edges holds 98"),
+        ("[[0, 9999]]", "'strokes.json' does not hold directions. edges holds 9999"),
         ("[[0, 10000000000]]", "A vertex of a direction lies outside the mesh"),
         ("[[0, 1, 2]]", "does not have the form"),
         ("[[0.5, 1, 2, 3]]", "does not have the form"),

@@ -117,7 +117,7 @@ def test_edges_that_are_none_are_refused(edge: tuple[int, int]) -> None:
     assert set(edge) not in [set(e) for e in meshes.edges_of(mesh.triangles).tolist()]
     with pytest.raises(lsgp.InputError) as refused:
         lsgp.edge_directions(surface_of(mesh), [meshes.edges_of(mesh.triangles)[0], edge])
-    inside = 0 <= min(edge) and max(edge) < len(mesh.positions)
+    inside = min(edge) >= 0 and max(edge) < len(mesh.positions)
     assert refused.value.code == ("EDGE_NOT_IN_MESH" if inside else "INDEX_OUT_OF_RANGE")
 
 
