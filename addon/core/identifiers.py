@@ -34,6 +34,9 @@ GAIN_ATTRIBUTE = "uv_cone_gain"
 UP_ATTRIBUTE = "uv_cone_up"
 """Vector attribute on faces: the drawn upward direction of the texture, of unit length; (0, 0, 0) for none."""
 
+ALONG_ATTRIBUTE = "uv_cone_along"
+"""Boolean attribute on edges: those along which the texture's upward direction is to run."""
+
 FEATURE_ATTRIBUTE = "uv_cone_feature"
 """Boolean attribute on edges: those that are to run straight along u or v."""
 

@@ -35,6 +35,7 @@ class Region:
     sharp: (s, 2) int32, the edges marked sharp.
     active_edge: vertices of the active edge in edit mode, if it is one of the faces'; None otherwise.
     drawn_up: (m, 3) float64, the drawn upward direction of the texture, 0 for none; None where nothing is drawn.
+    along: (k, 2) int32, the edges along which the texture's upward direction is to run, each once.
     cut_paint: (n,) float64, from 0 where cuts should run to 1 where they should not; None without such a vertex group.
     axes: (3, 3), the rotation from the region's shape to the world: a direction in the world, times it, is one here.
     weights: (n,) float64, those of importance or of density that were asked for; None without such a vertex group.
@@ -58,6 +59,7 @@ class Region:
     sharp: NDArray[np.int32]
     active_edge: tuple[int, int] | None
     drawn_up: NDArray[np.float64] | None
+    along: NDArray[np.int32]
     cut_paint: NDArray[np.float64] | None
     axes: NDArray[np.float64]
     weights: NDArray[np.float64] | None

@@ -15,6 +15,7 @@ ATTRIBUTES = (
     identifiers.LOG_SCALE_ATTRIBUTE,
     identifiers.GAIN_ATTRIBUTE,
     identifiers.UP_ATTRIBUTE,
+    identifiers.ALONG_ATTRIBUTE,
     identifiers.FEATURE_ATTRIBUTE,
 )
 

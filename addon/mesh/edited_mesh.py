@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.identifiers import UP_ATTRIBUTE
+from ..core.identifiers import ALONG_ATTRIBUTE, UP_ATTRIBUTE
 from .arrays import rows
 from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, each_once, stitched_vertices, triangulated
@@ -131,6 +131,12 @@ class EditedMesh(MeshReader):
     def drawn_up(self) -> FloatArray | None:
         layer = self._bm.faces.layers.float_vector.get(UP_ATTRIBUTE)
         return None if layer is None else rows([face[layer][:] for face in self._bm.faces], 3)
+
+    def along_sides(self) -> NDArray[np.int32]:
+        layer = self._bm.edges.layers.bool.get(ALONG_ATTRIBUTE)
+        self._bm.faces.index_update()
+        marked = [edge for edge in ([] if layer is None else self._bm.edges) if edge[layer]]
+        return rows([[*(v.index for v in e.verts), face.index] for e in marked for face in e.link_faces], 3, np.int32)
 
     def _uv_layer(self) -> bmesh.types.BMLayerItem | None:
         active = self._mesh.uv_layers.active

@@ -77,6 +77,10 @@ class MeshReader(Protocol):
     def drawn_up(self) -> FloatArray | None:
         """(f, 3) the drawn upward direction of the texture, 0 for none; None where there is no such attribute."""
 
+    def along_sides(self) -> NDArray[np.int32]:
+        """(s, 3) the vertices of edges along which the texture's upward direction is to run, the same way for all faces
+        of an edge, and a face beside it."""
+
 
 def stitched_vertices(
     places: FloatArray, face_vertices: NDArray[np.int32], face_sizes: NDArray[np.int32]

@@ -123,6 +123,7 @@ def build_region(
         sharp=edges[edge_used & mesh.is_sharp],
         active_edge=_active_edge(obj, mesh, edges[edge_used]),
         drawn_up=_drawn_up(mesh, inside, shape),
+        along=_along(edges[edge_used & mesh.is_along]),
         cut_paint=weights_in(obj, SEAM_COST_GROUP, mesh, outside=0.5),
         axes=axes,
         weights=None if groups.weights is None else weights_in(obj, groups.weights, mesh),
@@ -170,6 +171,11 @@ def _drawn_up(mesh: StoredMesh, inside: NDArray[np.bool_], shape: NDArray[np.flo
         return None
     drawn = mesh.drawn_up[mesh.triangle_faces[inside]].astype(np.float64) @ shape
     return drawn if drawn.any() else None
+
+
+def _along(edges: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Those of the surface that have a length, each once."""
+    return np.unique(np.sort(edges[edges[:, 0] != edges[:, 1]], axis=1), axis=0)
 
 
 def _object_shape(obj: bpy.types.Object) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:

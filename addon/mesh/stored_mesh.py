@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import versions
-from ..core.identifiers import FEATURE_ATTRIBUTE, UP_ATTRIBUTE
+from ..core.identifiers import ALONG_ATTRIBUTE, FEATURE_ATTRIBUTE, UP_ATTRIBUTE
 from .arrays import read_array
 from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, each_once, stitched_vertices, triangulated
@@ -51,10 +51,12 @@ class StoredMesh(MeshReader):
     @cached_property
     def is_feature(self) -> NDArray[np.bool_]:
         """(e,)"""
-        attribute = self._mesh.attributes.get(FEATURE_ATTRIBUTE)
-        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", "BOOLEAN"):
-            return np.zeros(len(self.edges), bool)
-        return read_array(attribute.data, "value", bool)
+        return self._edge_flags(FEATURE_ATTRIBUTE)
+
+    @cached_property
+    def is_along(self) -> NDArray[np.bool_]:
+        """(e,)"""
+        return self._edge_flags(ALONG_ATTRIBUTE)
 
     @cached_property
     def loop_start(self) -> NDArray[np.int32]:
@@ -269,6 +271,17 @@ class StoredMesh(MeshReader):
         if attribute is None or (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
             return None
         return read_array(attribute.data, "value", np.float32)
+
+    def along_sides(self) -> NDArray[np.int32]:
+        loops = np.flatnonzero(self.is_along[self.loop_edges])
+        return np.column_stack([self.edges[self.loop_edges[loops]], self.loop_faces[loops]]).astype(np.int32)
+
+    def _edge_flags(self, name: str) -> NDArray[np.bool_]:
+        """(e,) a boolean attribute on edges; False where there is no such attribute."""
+        attribute = self._mesh.attributes.get(name)
+        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", "BOOLEAN"):
+            return np.zeros(len(self.edges), bool)
+        return read_array(attribute.data, "value", bool)
 
     @property
     def _shown(self) -> NDArray[np.bool_]:

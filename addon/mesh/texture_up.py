@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The drawn upward direction of the texture on faces, as a vector attribute in the object's own space."""
+"""The upward direction of the texture: drawn on faces, as a vector attribute in the object's own space, or marked on
+edges, as a boolean attribute."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..core.errors import Refused
-from ..core.identifiers import UP_ATTRIBUTE
+from ..core.identifiers import ALONG_ATTRIBUTE, UP_ATTRIBUTE
 from . import changes
 from .attributes import tag_update
 from .mesh_reader import MeshReader
@@ -28,7 +29,7 @@ def directions_in(mesh: MeshReader) -> Directions:
 
 def write_directions(mesh: bpy.types.Mesh, directions: Directions) -> None:
     """Store the directions of a mesh in edit mode in place of all earlier ones.  Raises Refused."""
-    require_attribute(mesh)
+    require_up_attribute(mesh)
     bm = bmesh.from_edit_mesh(mesh)
     layers = bm.faces.layers.float_vector
     layer = layers.get(UP_ATTRIBUTE)
@@ -39,12 +40,51 @@ def write_directions(mesh: bpy.types.Mesh, directions: Directions) -> None:
         layer = layers.new(UP_ATTRIBUTE) if layer is None else layer
         for number, face in enumerate(bm.faces):
             face[layer] = Vector(directions.get(number, (0.0, 0.0, 0.0)))
+    _tell(mesh)
+
+
+def mark_edges(mesh: bpy.types.Mesh) -> int:
+    """Mark the selected edges of faces of a mesh in edit mode.  Returns how many there are.  Raises Refused."""
+    _require(mesh, ALONG_ATTRIBUTE, "EDGE", "BOOLEAN", "a boolean attribute on edges")
+    bm = bmesh.from_edit_mesh(mesh)
+    layers = bm.edges.layers.bool
+    # A new layer before the edges are listed, which it makes anew.
+    layer = layers.get(ALONG_ATTRIBUTE) or layers.new(ALONG_ATTRIBUTE)
+    edges = [edge for edge in bm.edges if edge.select and edge.link_faces]
+    for edge in edges:
+        edge[layer] = True
+    if not any(edge[layer] for edge in bm.edges):
+        layers.remove(layer)
+    _tell(mesh)
+    return len(edges)
+
+
+def clear_edges(mesh: bpy.types.Mesh) -> int:
+    """Take the marks off the selected edges of a mesh in edit mode.  Returns how many there were."""
+    bm = bmesh.from_edit_mesh(mesh)
+    layers = bm.edges.layers.bool
+    layer = layers.get(ALONG_ATTRIBUTE)
+    edges = [edge for edge in ([] if layer is None else bm.edges) if edge[layer] and edge.select]
+    for edge in edges:
+        edge[layer] = False
+    if edges:
+        if not any(edge[layer] for edge in bm.edges):
+            layers.remove(layer)
+        _tell(mesh)
+    return len(edges)
+
+
+def require_up_attribute(mesh: bpy.types.Mesh) -> None:
+    """Raise Refused where the name belongs to another attribute than directions of faces."""
+    _require(mesh, UP_ATTRIBUTE, "FACE", "FLOAT_VECTOR", "a vector attribute on faces")
+
+
+def _require(mesh: bpy.types.Mesh, name: str, domain: str, data_type: str, kind: str) -> None:
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain, attribute.data_type) != (domain, data_type):
+        raise Refused(f'the attribute "{name}" is not {kind}; rename it')
+
+
+def _tell(mesh: bpy.types.Mesh) -> None:
     tag_update(mesh)
     changes.mark_changed(mesh)
-
-
-def require_attribute(mesh: bpy.types.Mesh) -> None:
-    """Raise Refused where the name belongs to another attribute."""
-    attribute = mesh.attributes.get(UP_ATTRIBUTE)
-    if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "FLOAT_VECTOR"):
-        raise Refused(f'the attribute "{UP_ATTRIBUTE}" is not a vector attribute on faces; rename it')

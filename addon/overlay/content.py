@@ -13,7 +13,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import native
 from ..core.identifiers import CONE_GROUP
+from ..jobs.tasks.directions import UP
 from ..mesh.angles import read_angles
 from ..mesh.reader import reader
 from ..mesh.texture_up import directions_in
@@ -30,6 +32,9 @@ FloatArray = NDArray[np.float32]
 
 CutSides = tuple[FloatArray, FloatArray]
 """Segments along both sides of a cut, (s, 2, 3), and the same in the layout, (s, 2, 2)."""
+
+EdgeFaces = dict[tuple[int, int], list[int]]
+"""The faces beside edges."""
 
 # Distance of the two lines of a cut from it, one on each side, relative to its mean edge length.
 SIDE_OFFSET = 0.12
@@ -65,9 +70,10 @@ class Content:
     which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
     number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
     kinds: of each path one of `cut_kinds`; empty where they are not known.
-    flipped, overlapping: (t, 3, 3) triangles. up_lines: (s, 2, 3) arrows along the drawn directions. missed_places:
-    (d, 3) the middles of those that the map misses noticeably, and missed_by: (d,) by how much, in radians. active: the
-    vertex of the active cone, None for none. active_path: the number of the path that is drawn wider, None for none.
+    flipped, overlapping: (t, 3, 3) triangles. up_lines: (s, 2, 3) arrows along the directions drawn on faces, and
+    along_lines: the same along marked edges. missed_places: (d, 3) the middles of those that the map misses noticeably,
+    and missed_by: (d,) by how much, in radians. active: the vertex of the active cone, None for none. active_path: the
+    number of the path that is drawn wider, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -80,6 +86,7 @@ class Content:
     flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     up_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
+    along_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
     missed_places: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
     missed_by: list[float] = field(default_factory=list)
     active: int | None = None
@@ -110,8 +117,8 @@ def build_content(
     vertices = [cone.vertex for cone in found]
     cone_rows, cone_uv = mesh.vertex_uv(vertices)
     lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)
-    drawn = directions_in(mesh)
-    missed = _missed(report, drawn)
+    drawn, edges = directions_in(mesh), _marked_edges(mesh)
+    missed = _missed(report, mesh, drawn, edges)
     return Content(
         cones=found,
         cone_places=mesh.positions(vertices),
@@ -124,8 +131,9 @@ def build_content(
         flipped=_triangles(mesh, [] if report is None else report.flipped),
         overlapping=_triangles(mesh, [] if report is None else report.overlapping),
         up_lines=_arrows(mesh, drawn),
-        missed_places=np.array([_frame(mesh, face)[0] for face in missed], np.float32).reshape(-1, 3),
-        missed_by=list(missed.values()),
+        along_lines=_edge_arrows(obj, mesh, edges),
+        missed_places=np.array([place for place, _ in missed], np.float32).reshape(-1, 3),
+        missed_by=[error for _, error in missed],
     )
 
 
@@ -236,11 +244,35 @@ def _arrows(mesh: MeshReader, directions: Directions) -> FloatArray:
     lines = []
     for face, up in directions.items():
         middle, normal, size = _frame(mesh, face)
-        shaft = ARROW * size * np.array(up, np.float32)
-        across, tip = np.cross(normal, shaft), middle + shaft / 2
-        lines.append((middle - shaft / 2, tip))
-        lines += [(tip, tip - HEAD * shaft + side * HEAD * across) for side in (0.6, -0.6)]
+        lines += _arrow(middle, ARROW * size * np.array(up, np.float32), normal)
     return np.array(lines, np.float32).reshape(-1, 2, 3)
+
+
+def _marked_edges(mesh: MeshReader) -> EdgeFaces:
+    edges: EdgeFaces = {}
+    for first, last, face in mesh.along_sides().tolist():
+        edges.setdefault((first, last), []).append(face)
+    return edges
+
+
+def _edge_arrows(obj: bpy.types.Object, mesh: MeshReader, edges: EdgeFaces) -> FloatArray:
+    """(3k, 2, 3): as above, on each edge."""
+    ends = mesh.positions([vertex for edge in edges for vertex in edge]).reshape(-1, 2, 3)
+    in_world = (ends[:, 1] - ends[:, 0]) @ np.array(obj.matrix_world.to_3x3()).T
+    is_upward = native.part("edge_directions").is_upward(in_world, np.array(UP)) if edges else []
+    lines = []
+    for (first, last), faces, upward in zip(ends, edges.values(), is_upward, strict=True):
+        normal = np.sum([_frame(mesh, face)[1] for face in faces], axis=0)
+        normal /= max(np.linalg.norm(normal), np.finfo(np.float32).tiny)
+        lines += _arrow((first + last) / 2, ARROW * (last - first) * (1 if upward else -1), normal)
+    return np.array(lines, np.float32).reshape(-1, 2, 3)
+
+
+def _arrow(middle: FloatArray, shaft: FloatArray, normal: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """A shaft and the two sides of a head, across the normal."""
+    across, tip = np.cross(normal, shaft), middle + shaft / 2
+    heads = [(tip, tip - HEAD * shaft + side * HEAD * across) for side in (0.6, -0.6)]
+    return [(middle - shaft / 2, tip), *heads]
 
 
 def texture_axes(mesh: MeshReader) -> tuple[FloatArray, FloatArray]:
@@ -262,12 +294,20 @@ def texture_axes(mesh: MeshReader) -> tuple[FloatArray, FloatArray]:
     return u, v
 
 
-def _missed(report: Report | None, drawn: Directions) -> dict[int, float]:
-    """By face of those that are still drawn on."""
+def _missed(
+    report: Report | None, mesh: MeshReader, drawn: Directions, edges: EdgeFaces
+) -> list[tuple[FloatArray, float]]:
+    """The middles of faces that are still drawn on, and of edges that are still marked, and by how much the map misses
+    them."""
     if report is None:
-        return {}
-    errors = zip(report.drawn, report.drawn_errors, strict=True)
-    return {face: error for face, error in errors if face in drawn and error > NOTICEABLE}
+        return []
+    errors = dict(zip(report.drawn, report.drawn_errors, strict=True))
+    missed = [(_frame(mesh, face)[0], errors[face]) for face in errors if face in drawn and errors[face] > NOTICEABLE]
+    for edge, faces in edges.items():
+        error = max((errors[face] for face in faces if face in errors and face not in drawn), default=0.0)
+        if error > NOTICEABLE:
+            missed.append((mesh.positions(edge).mean(axis=0), error))
+    return missed
 
 
 def _frame(mesh: MeshReader, face: int) -> tuple[FloatArray, FloatArray, float]:

@@ -119,7 +119,7 @@ def _draw_directions(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: Ove
     batches = []
     if chosen.axes:
         batches += [entry.batch(name, partial(_axis_batch, obj, number)) for number, name in enumerate(("u", "v"))]
-    if chosen.up and len(entry.content.up_lines):
+    if chosen.up and (len(entry.content.up_lines) or len(entry.content.along_lines)):
         batches.append(entry.batch("up", partial(_arrow_batch, entry.content, look)))
     shader = shaders.lines()
     shader.bind()
@@ -130,7 +130,8 @@ def _draw_directions(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: Ove
 
 
 def _arrow_batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:
-    return shaders.line_batch(content.up_lines, colors.repeated(look.up, len(content.up_lines)))
+    lines = np.concatenate([content.up_lines, content.along_lines])
+    return shaders.line_batch(lines, colors.repeated(look.up, len(lines)))
 
 
 def _axis_batch(obj: bpy.types.Object, number: int) -> gpu.types.GPUBatch:

@@ -18,6 +18,7 @@ from ...mesh import reports
 from ...mesh.uv_write import write_uv
 from ..tasks import cells
 from ..tasks.areas import size_in_texels, total_area
+from ..tasks.directions import drawn_directions
 from ..tasks.summaries import unwrap_summary
 from ..tasks.unwrapping import Unwrapped
 from ..uv_maps.texels import map_density
@@ -177,10 +178,10 @@ def report_on(unwrapped: Unwrapped) -> reports.Report:
 
 
 def _drawn_errors(unwrapped: Unwrapped) -> tuple[list[int], list[float]]:
-    """The faces on which a direction is drawn, and how far the map is from it, the largest of their triangles; none
-    where it follows something else."""
+    """The faces on which a direction is drawn or which have a marked edge, and how far the map is from it, the largest
+    of their triangles; none where it follows something else."""
     errors, region = unwrapped.result.direction_errors, unwrapped.region
-    if errors is None or not np.array_equal(region.surface.directions, region.drawn_up):
+    if errors is None or not np.array_equal(region.surface.directions, drawn_directions(region)):
         return [], []
     has_error = np.isfinite(errors)
     faces, number = np.unique(region.triangle_faces[has_error], return_inverse=True)

@@ -256,6 +256,8 @@ class ConeSession(MapSession):
                 edges=surface.edges[own_edges],
                 cut_costs=None if surface.cut_costs is None else surface.cut_costs[own_edges],
                 seams=surface.seams[inside[surface.seams[:, 0]]],
+                directions=None if surface.directions is None else surface.directions[triangles],
+                features=surface.features[inside[surface.features[:, 0]]],
             )
             region = replace(
                 whole,
@@ -263,6 +265,8 @@ class ConeSession(MapSession):
                 triangle_loops=whole.triangle_loops[triangles],
                 triangle_faces=whole.triangle_faces[triangles],
                 vertex_used=inside & whole.vertex_used,
+                drawn_up=None if whole.drawn_up is None else whole.drawn_up[triangles],
+                along=whole.along[inside[whole.along[:, 0]]],
             )
             self._scope = _Scope(touched, triangles, region, native.lsgp.Solver(surface))
         return self._scope

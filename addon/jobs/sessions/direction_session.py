@@ -11,7 +11,7 @@ from ...mesh import changes
 from ...mesh.reader import readable_mesh
 from ...mesh.region_read import require_editable
 from ...mesh.stored_mesh import FrozenMesh, StoredMesh
-from ...mesh.texture_up import Directions, directions_in, require_attribute, write_directions
+from ...mesh.texture_up import Directions, directions_in, require_up_attribute, write_directions
 
 # Part of a step on a face that has to lie in its plane.
 LEAST_INSIDE = 1e-3
@@ -23,7 +23,7 @@ class DirectionSession:
     def __init__(self, obj: bpy.types.Object, mesh: FrozenMesh) -> None:
         """Raises Refused."""
         require_editable(obj)
-        require_attribute(obj.data)
+        require_up_attribute(obj.data)
         self._obj, self.mesh = obj, mesh
         self._era, self._doubted = changes.era(), False
         self._start = directions_in(mesh)

@@ -27,7 +27,7 @@ class DirectionChoice:
     """What v is to run along.
 
     axis: (3,) in the world; None: nothing. by_edge: the region's active edge instead, on a face beside it. if_drawn: as
-    drawn on the region instead, where anything is.
+    drawn and marked on the region instead, where anything is.
     """
 
     axis: tuple[float, float, float] | None = None
@@ -43,31 +43,36 @@ def direction_choice(args: argparse.Namespace) -> DirectionChoice:
     return DirectionChoice(None if up is None else tuple(up))
 
 
-def upward(along: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A direction, (3,), or its opposite: that which is rather up than down in the world, or else runs along its first
-    axis that it is not across; so that it does not matter in which order an edge has its vertices.
-
-    axes: (3, 3), which take directions to the world.
-    """
-    world = axes @ along
-    return along * next((np.sign(part) for part in world[::-1] if abs(part) > 1e-6 * np.abs(world).max()), 1.0)
+def drawn_directions(region: Region) -> NDArray[np.float64] | None:
+    """(m, 3) what is drawn on faces, and on the others what is marked on edges beside them; None where nothing is."""
+    if not len(region.along):
+        return region.drawn_up
+    along = _along_edges(region, region.along)
+    if region.drawn_up is None:
+        return along
+    return np.where(region.drawn_up.any(axis=1, keepdims=True), region.drawn_up, along)
 
 
 def with_directions(region: Region, choice: DirectionChoice) -> Region:
     """The region with directions of its triangles.  Raises Refused."""
     surface = region.surface
-    if choice.if_drawn and region.drawn_up is not None:
-        return replace(region, surface=replace(surface, directions=region.drawn_up))
+    drawn = drawn_directions(region) if choice.if_drawn else None
+    if drawn is not None:
+        return replace(region, surface=replace(surface, directions=drawn))
     if not choice.by_edge:
         if choice.axis is None:
             return region
         return replace(region, surface=replace(surface, directions=np.array(choice.axis) @ region.axes))
     if region.active_edge is None:
         raise Refused("no edge of the selected faces is active; select one last in edit mode, or choose an axis")
-    first, last = region.active_edge
-    along = surface.positions[last] - surface.positions[first]
-    beside = (surface.triangles == first).any(axis=1) & (surface.triangles == last).any(axis=1)
-    directions = np.zeros(surface.triangles.shape)
+    directions = _along_edges(region, np.array([region.active_edge]))
     # On one side alone: should a cut run along the edge, both sides cannot be met.
-    directions[np.flatnonzero(beside)[0]] = upward(along, region.axes)
+    directions[np.flatnonzero(directions.any(axis=1))[1:]] = 0
     return replace(region, surface=replace(surface, directions=directions))
+
+
+def _along_edges(region: Region, edges: NDArray[np.integer]) -> NDArray[np.float64]:
+    """(m, 3) of v along edges of the region, (e, 2), rather up than down in the world."""
+    surface = region.surface
+    in_world = native.lsgp.Surface(surface.positions @ region.axes.T, surface.triangles, may_collapse=True)
+    return native.lsgp.edge_directions(in_world, edges, up=UP) @ region.axes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw Texture Up and Mark Texture Up: what strokes store on a mesh, and how unwrapping uses it."""
+"""Draw Texture Up: what strokes store on a mesh, and how unwrapping uses it."""
 
 import bmesh
 import bpy
@@ -182,23 +182,6 @@ def test_tiles_follow_a_stroke_up_to_quarter_turns():
     top = np.array([face.normal.z > 0.9 for face in cube.data.polygons])
     assert off(way_of(cube, along(np.pi / 4))[top], 4) <= np.radians(1)
     assert UvMap(cube).tile_error() == 0
-
-
-def test_marked_edges_point_up_and_are_cleared_again():
-    cube = add_cube(cuts=2)
-    edit(cube, select="DESELECT")
-    bm = bmesh.from_edit_mesh(cube.data)
-    upright = next(edge for edge in bm.edges if edge.verts[0].co.z != edge.verts[1].co.z)
-    upright.select_set(True)
-    bmesh.update_edit_mesh(cube.data)
-    assert bpy.ops.mesh.cone_mark_up() == {"FINISHED"}
-    vectors = stored(cube)
-    assert vectors.any(axis=1).sum() == 1 and np.allclose(vectors[vectors.any(axis=1)], (0, 0, 1), atol=1e-6)
-    bpy.ops.mesh.select_all(action="SELECT")
-    assert bpy.ops.mesh.cone_mark_up(clear=True) == {"FINISHED"}
-    assert stored(cube) is None
-    with pytest.raises(RuntimeError, match="No selected face has a direction"):
-        bpy.ops.mesh.cone_mark_up(clear=True)
 
 
 def test_the_attribute_of_another_kind_is_left_alone():
