@@ -21,7 +21,7 @@ DIRECTIONS: Choices = {
     "AUTO": (
         None,
         "Automatic",
-        "As drawn on the mesh, otherwise world Z where the UV map is for tiles, otherwise as it fits",
+        "As drawn or marked on the mesh, otherwise world Z where the UV map is for tiles, otherwise as it fits",
     ),
     "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
     "X": (None, "World X", "The texture's upward direction is the world's X axis, as far as the surface permits"),

@@ -31,7 +31,7 @@ AMOUNTS: Choices = {
     "SIZE": (None, "Size", "Quads of this size on the surface, before rounding"),
 }
 ROWS: Choices = {
-    "AUTO": (None, "Automatic", "Rows run along what Draw Texture Up has drawn on the mesh; without that, up"),
+    "AUTO": (None, "Automatic", "Rows run along what is drawn or marked as Texture Up on the mesh; without that, up"),
     "FREE": (None, "As They Fit", "Rows run where quads are distorted least"),
     "X": (None, "World X", "Rows run along the world's X axis, as far as the irregular vertices permit"),
     "Y": (None, "World Y", "Rows run along the world's Y axis, as far as the irregular vertices permit"),

@@ -207,11 +207,14 @@ def test_rows_run_along_the_world_axis():
     assert (np.minimum(upright, 1 - upright) < 1e-4).all()
 
 
-def test_rows_run_along_what_is_drawn():
+@pytest.mark.parametrize("on_edges", [False, True])
+def test_rows_run_along_what_is_drawn(on_edges):
     found = {}
     for drawn in (False, True):
         ball = add_ball()
-        if drawn:
+        if drawn and on_edges:
+            ball.data.attributes.new(identifiers.ALONG_ATTRIBUTE, "BOOLEAN", "EDGE").data[7].value = True
+        elif drawn:
             attribute = ball.data.attributes.new(identifiers.UP_ATTRIBUTE, "FLOAT_VECTOR", "FACE")
             attribute.data.foreach_set("vector", np.tile([1.0, 2.0, 0.0], len(ball.data.polygons)).astype(np.float32))
         for rows in ("AUTO", "Z"):

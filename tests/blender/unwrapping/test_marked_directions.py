@@ -6,10 +6,11 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
-from scenes import add_ball, add_cone_cube, add_cube, add_grid, add_tube, edit, select_only
+from scenes import add_ball, add_cone_cube, add_cube, add_grid, add_tube, edit, joined
 from texture_ways import STORED, way_of
 
-content, identifiers, reader = addon.overlay.content, addon.core.identifiers, addon.mesh.reader
+content, identifiers = addon.overlay.content, addon.core.identifiers
+unwrap_settings = addon.operators.unwrapping.properties.unwrap_settings
 ALONG, UP = identifiers.ALONG_ATTRIBUTE, identifiers.UP_ATTRIBUTE
 MET = np.radians(0.01)
 
@@ -24,14 +25,18 @@ def upright(obj):
     return [number for number, way in enumerate(along) if np.abs(way[:2]).max() < 1e-5]
 
 
-def mark(obj, edges):
-    """With the operator."""
-    edit(obj, select="DESELECT")
+def select_edges(obj, edges):
     bm = bmesh.from_edit_mesh(obj.data)
     bm.edges.ensure_lookup_table()
     for number in edges:
         bm.edges[number].select_set(True)
     bmesh.update_edit_mesh(obj.data)
+
+
+def mark(obj, edges):
+    """With the operator."""
+    edit(obj, select="DESELECT")
+    select_edges(obj, edges)
     try:
         return bpy.ops.mesh.cone_mark_up()
     finally:
@@ -77,7 +82,6 @@ def test_v_runs_up_along_a_marked_edge(rotation):
     assert mark(tube, [edge]) == {"FINISHED"}
     assert marked(tube) == [edge] and UP not in tube.data.attributes
     for unwrap in (bpy.ops.uv.cone_auto_unwrap, bpy.ops.uv.cone_unwrap):
-        select_only(tube)
         assert unwrap() == {"FINISHED"}
         assert len(images(tube, edge)) == 2 and off(images(tube, edge)) <= MET
 
@@ -142,9 +146,7 @@ def test_marking_and_clearing():
     attribute = cube.data.attributes.new(UP, "FLOAT_VECTOR", "FACE")
     attribute.data[0].vector = (0, 0, 1)
     edit(cube, select="DESELECT")
-    bm = bmesh.from_edit_mesh(cube.data)
-    bm.edges.ensure_lookup_table()
-    bm.edges[edges[0]].select_set(True)
+    select_edges(cube, edges[:1])
     assert bpy.ops.mesh.cone_mark_up(clear=True) == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     assert marked(cube) == edges[1:3] and UP in cube.data.attributes
@@ -206,20 +208,22 @@ def test_what_the_map_misses_is_told_at_each_edge():
 
 
 def test_cones_of_one_of_two_parts_are_edited_under_directions():
-    tube = add_tube(taper=0.0)
-    other = add_ball()
-    other.location.x = 5
-    select_only(tube)
-    other.select_set(True)
-    bpy.ops.object.join()
-    set_attribute(tube, upright(tube)[3:4])
-    properties = addon.operators.unwrapping.properties
+    tube = joined(add_tube(taper=0.0), add_ball())
+    edge = upright(tube)[3]
+    set_attribute(tube, [edge])
+    tube.data.attributes.new("uv_cone_feature", "BOOLEAN", "EDGE").data[edge].value = True
     edit(tube)
     chosen = bpy.context.window_manager.operator_properties_last(identifiers.UNWRAP)
-    session = addon.jobs.sessions.cone_session.ConeSession(tube, properties.unwrap_settings(chosen))
-    session.cones.add(len(tube.data.vertices) - 1)
-    assert session.solve()
-    session.end() if hasattr(session, "end") else None
+    session = addon.jobs.sessions.cone_session.ConeSession(tube, unwrap_settings(chosen))
+    for vertex in (len(tube.data.vertices) - 1, tube.data.edges[edge].vertices[0]):
+        session.cones.add(vertex)
+        step = session.draft()
+        unwrapped = step.solve()
+        # The ball alone, and then both.
+        has_direction = np.isfinite(unwrapped.result.direction_errors).any()
+        assert has_direction == (vertex != len(tube.data.vertices) - 1)
+        session.show(step, unwrapped)
+    session.restore()
 
 
 def test_clearing_cone_data_removes_marks():
