@@ -13,6 +13,7 @@ import numpy as np
 from ..base.arguments import IndexArray
 from ..features import feature_edges
 from ..io.side_files import UsageError, load_json, pairs_in
+from ..stitching import at_stitched
 from ..surface import Surface
 
 _CREASE, _SHARP, _SEAMS, _BORDERS = "crease", "sharp", "seams", "borders"
@@ -47,13 +48,16 @@ def add_features_option(command: argparse.ArgumentParser, which: str) -> None:
     )
 
 
-def features_of(option: FeatureKinds | str | None, surface: Surface) -> IndexArray:
-    """What the option says of a mesh file, for `Surface.features`.  Raises OSError, UsageError, InputError."""
+def features_of(option: FeatureKinds | str | None, surface: Surface, stitched: IndexArray) -> IndexArray:
+    """What the option says of a mesh file, for `Surface.features`.  Raises OSError, UsageError, InputError.
+
+    stitched: as of the surface's `MeshFile`.
+    """
     if option is None:
         return np.empty((0, 2), np.int32)
     if isinstance(option, str):
         path = Path(option)
-        return pairs_in(load_json(path), path, "feature vertex")
+        return at_stitched(stitched, pairs_in(load_json(path), path, "feature vertex"))
     if option.sharp:
         raise UsageError("--features sharp: files of this format mark no edges sharp; name the edges in a file")
     return option.edges_of(surface, np.empty((0, 2), np.int32))

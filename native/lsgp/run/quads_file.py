@@ -110,7 +110,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
     surface, strokes = file.surface(), strokes_of(args, directions_json, file)
     directions = args.up if strokes is None else strokes.directions
-    surface = replace(surface, directions=directions, features=features_of(args.features, surface))
+    surface = replace(surface, directions=directions, features=features_of(args.features, surface, file.stitched))
     with run.stage("remesh_to_quads"):
         remesh = remesh_to_quads(
             surface,

@@ -223,7 +223,7 @@ def _map(
     run.strokes = strokes_of(args, directions_json, file)
     directions = up_of(args) if run.strokes is None else run.strokes.directions
     surface = replace(file.surface(pairs_in(seams_json, seams_path, "seam vertex"), importance), directions=directions)
-    surface = replace(surface, features=features_of(args.features, surface))
+    surface = replace(surface, features=features_of(args.features, surface, file.stitched))
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface, file.stitched))
     given = ((), None) if cones_path is None else file.cones(*cones_in(cones_json, cones_path, args.prescription))

@@ -135,3 +135,20 @@ def test_a_pair_that_is_no_edge(lsgp, cube_files: Path) -> None:
     (cube_files / "far.json").write_text(f"[[0, {len(read_mesh(cube_files / 'cube.obj').positions) - 1}]]")
     refused = lsgp(*UNWRAP, "--features", "far.json")
     assert refused.code == 3 and "EDGE_NOT_IN_MESH" in refused.err
+
+
+@pytest.mark.parametrize("option", ["--features", "--directions"])
+def test_edges_at_boundaries_that_are_stitched_have_the_vertices_of_the_file(
+    lsgp, cube_files: Path, option: str
+) -> None:
+    # A tube of four walls, the first and last of which have their own vertices where they meet, 0 and 4 to 5 and 9.
+    places = [(x, y, z) for z in (0, 2) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
+    lines = [f"v {x} {y} {z}" for x, y, z in places]
+    lines += [f"f {i} {i + 1} {i + 6} {i + 5}" for i in range(1, 5)]
+    (cube_files / "tube.obj").write_text("\n".join(lines) + "\n")
+    (cube_files / "edge.json").write_text("[[4, 9]]")
+    done = lsgp("unwrap", "tube.obj", "-o", "out.obj", "--preset", "tile", option, "edge.json")
+    assert done.code == 0, done.err
+    a, b = (read_mesh(cube_files / "out.obj", with_uv=True).corner_uv[k] for k in (13, 14))
+    assert np.argmax(np.abs(b - a)) == 1 or option == "--features"
+    assert np.abs(b - a).min() <= 1e-9
