@@ -197,12 +197,15 @@ lsgp::Lattice to_lattice(const std::string& name) {
 // A dictionary with the fields of lsgp.Seamless.
 lsgp::Seamless to_seamless(const py::dict& values) {
   using lsgp::CoarseGrid;
+  using lsgp::FeaturePlaces;
   lsgp::Seamless seamless;
   seamless.lattice = to_lattice(values["lattice"].cast<std::string>());
   seamless.tiles = values["tiles"].cast<std::optional<double>>();
   seamless.tile_size = values["tile_size"].cast<std::optional<double>>();
   seamless.parity = values["parity"].cast<bool>();
-  seamless.whole_features = values["whole_features"].cast<bool>();
+  seamless.feature_places = choose<FeaturePlaces>(
+      values["feature_places"].cast<std::string>(),
+      {{"anywhere", FeaturePlaces::anywhere}, {"half", FeaturePlaces::half}, {"whole", FeaturePlaces::whole}});
   seamless.coarse_grid =
       choose<CoarseGrid>(values["coarse_grid"].cast<std::string>(),
                          {{"refine", CoarseGrid::refine}, {"merge", CoarseGrid::merge}, {"relax", CoarseGrid::relax}});

@@ -19,6 +19,7 @@ SeamMode = Literal["follow", "boundary", "ignore"]
 BorderMode = Literal["free", "straight"]
 Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
 CoarseGrid = Literal["refine", "merge", "relax"]
+FeaturePlaces = Literal["anywhere", "half", "whole"]
 Mode = Literal["conformal", "low-stretch"]
 Overlaps = Literal["keep", "split"]
 Compactness = Literal["off", "sparing", "full"]
@@ -50,8 +51,10 @@ class Seamless:
         its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion. Components that
         need a finer one, and have less than a twentieth of the area together, get it for themselves.
     parity: square lattice only: black and white cells match across cuts as well.
-    whole_features: features are at whole cells or released, and may cost a fifth of L2 stretch, as quads along them
-        require; otherwise at multiples of 1 / 256 of a cell where cells are too large, at a tenth.
+    feature_places: where features and creases along the lattice lie: "anywhere", at multiples of 1 / 256 of a cell
+        where cells are too large for whole ones; "half", at half cells, or "whole", at whole ones as quads along them
+        require: those that find no such place are released, and the others may cost a fifth of L2 stretch instead of a
+        tenth.
     coarse_grid: if no layout on such a coarse grid is valid: "refine" uses the next finer one, "merge" merges cones
         less than a cell apart, "relax" leaves those cones off the grid that cannot be placed on it.
     cell: side of a cell in texture coordinates, a power of two. 1 is a whole tile; 2**level / size makes translations
@@ -64,13 +67,13 @@ class Seamless:
     parity: bool = False
     coarse_grid: CoarseGrid = "refine"
     cell: float = 1.0
-    whole_features: bool = False
+    feature_places: FeaturePlaces = "anywhere"
 
     def __post_init__(self) -> None:
         arguments.require_choice("lattice", self.lattice, get_args(Lattice))
         arguments.require_choice("coarse_grid", self.coarse_grid, get_args(CoarseGrid))
-        for name in ("parity", "whole_features"):
-            set_field(self, name, arguments.flag(name, getattr(self, name)))
+        arguments.require_choice("feature_places", self.feature_places, get_args(FeaturePlaces))
+        set_field(self, "parity", arguments.flag("parity", self.parity))
         for name in ("tiles", "tile_size", "cell"):
             value = getattr(self, name)
             if value is not None or name == "cell":

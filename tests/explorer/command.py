@@ -115,12 +115,12 @@ def _files_and_arguments(
 
 def _seamless_arguments(seamless: lsgp.Seamless) -> list[str]:
     arguments = ["--seamless", "--lattice", seamless.lattice, "--coarse-grid", seamless.coarse_grid]
+    arguments += ["--feature-places", seamless.feature_places]
     if seamless.tiles is not None:
         arguments += ["--tiles", repr(seamless.tiles)]
     elif seamless.tile_size is not None:
         arguments += ["--tile-size", repr(seamless.tile_size)]
-    flags = ("parity", "whole_features")
-    return arguments + [f"--{flag.replace('_', '-')}" for flag in flags if getattr(seamless, flag)]
+    return arguments + (["--parity"] if seamless.parity else [])
 
 
 def _run(folder: Path, arguments: list[str], *, separate: bool) -> tuple[int, str]:

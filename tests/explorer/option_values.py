@@ -18,7 +18,7 @@ SEAMLESS: Values = {
     "tiles": [None, 1, 4, 12, 48, 0.3],
     "tile_size": [None, 0.1, 1.0],
     "parity": [False, True],
-    "whole_features": [False, True],
+    "feature_places": ["anywhere", "half", "whole"],
     "coarse_grid": ["refine", "merge", "relax"],
     "cell": [1.0, 0.125, 2.0**-10],
 }

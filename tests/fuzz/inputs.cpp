@@ -72,7 +72,7 @@ lsgp::Seamless make_seamless(Bytes& bytes) {
   if (size == 2) seamless.tile_size = bytes.number();
   if (size > 2) seamless.tiles = 1 << (size - 2);
   seamless.parity = bytes.once_in(4);
-  seamless.whole_features = bytes.once_in(4);
+  seamless.feature_places = bytes.choice<lsgp::FeaturePlaces>(3);
   seamless.coarse_grid = bytes.choice<lsgp::CoarseGrid>(3);
   if (const int cell = bytes.below(16); cell > 12)
     seamless.cell = cell == 13 ? bytes.number() : std::ldexp(1, cell - 16);

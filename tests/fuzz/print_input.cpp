@@ -33,7 +33,7 @@ void print_seamless(const lsgp::Seamless& seamless) {
   if (seamless.tiles) print_value("seamless.tiles", *seamless.tiles);
   if (seamless.tile_size) print_value("seamless.tile_size", *seamless.tile_size);
   print_choice("seamless.parity", seamless.parity);
-  print_choice("seamless.whole_features", seamless.whole_features);
+  print_choice("seamless.feature_places", static_cast<int>(seamless.feature_places));
   print_choice("seamless.coarse_grid", static_cast<int>(seamless.coarse_grid));
   print_value("seamless.cell", seamless.cell);
 }

@@ -5,8 +5,8 @@
 
 Features are all edges at which the surface bends by 40 degrees or more. Their sides are measured anew from the
 coordinates as float32 stores them: one is along u or v if the other coordinate of its ends is the same number, and with
-"tile" it is at whole tiles if that number is whole, without and with `Seamless.whole_features`. L2
-stretch is that of the same preset without features and straight sides, and with features. FOLDER holds OBJ or OFF
+"tile" it is at whole or half tiles if that number is, without and with these as `Seamless.feature_places`. L2 stretch
+is that of the same preset without features and straight sides, and with features. FOLDER holds OBJ or OFF
 files (default: ../shared/meshes and its folder hard); those that are missing are left out. Needs the lsgp wheel and the
 tests' scipy.
 """
@@ -28,7 +28,8 @@ from zoo import closed, swept
 ANGLE = np.radians(40)
 REASONS = ("curved", "contradiction", "stretch", "lattice")
 COLUMNS = ("cones", "along u or v", "off it", *REASONS, "L2 without", "with", "flips", "seconds")
-OF_TILES = ("at whole tiles", "if asked for", "tiles", "if asked for", "L2, if asked for")
+STEPS = {"whole": 1.0, "half": 0.5}  # by their place, in tiles
+OF_TILES = ("tiles", *(f"{place}: {what}" for place in STEPS for what in ("at such, without", "with", "tiles", "L2")))
 
 MESHES = GENERATED | {
     "turned spool": closed.lathe(
@@ -52,11 +53,11 @@ def sides_of(surface: lsgp.Surface, result: lsgp.Result) -> tuple[NDArray[np.flo
     return uv[is_side], np.linalg.norm(np.diff(surface.positions[ends[is_side]], axis=1)[:, 0], axis=1) / 2
 
 
-def share_at_whole_tiles(surface: lsgp.Surface, result: lsgp.Result) -> float:
-    """Of the length of both sides of the features."""
+def share_at(step: float, surface: lsgp.Surface, result: lsgp.Result) -> float:
+    """Of the length of both sides of the features, the part at multiples of a step."""
     uv, length = sides_of(surface, result)
-    is_whole = ((uv[:, 0] == uv[:, 1]) & (uv[:, 0] == np.round(uv[:, 0]))).any(axis=1)
-    return length[is_whole].sum() / length.sum()
+    is_at = ((uv[:, 0] == uv[:, 1]) & (uv[:, 0] % step == 0)).any(axis=1)
+    return length[is_at].sum() / length.sum()
 
 
 def cells(surface: lsgp.Surface, preset: str) -> Iterator[str]:
@@ -82,12 +83,14 @@ def cells(surface: lsgp.Surface, preset: str) -> Iterator[str]:
     yield f"{seconds:.1f}"
     if preset != "tile":
         return
-    options = lsgp.preset_options(preset)
-    options = replace(options, seamless=replace(options.seamless, whole_features=True))
-    whole = lsgp.auto_unwrap(marked, preset=preset, options=options)
-    yield from (f"{share_at_whole_tiles(marked, found):.3f}" for found in (result, whole))
-    yield from (f"{found.seamless.tiles:.4g}" for found in (result, whole))
-    yield f"{whole.distortion.l2_stretch:.4f}"
+    yield f"{result.seamless.tiles:.4g}"
+    for place, step in STEPS.items():
+        options = lsgp.preset_options(preset)
+        options = replace(options, seamless=replace(options.seamless, feature_places=place))
+        found = lsgp.auto_unwrap(marked, preset=preset, options=options)
+        yield from (f"{share_at(step, marked, other):.3f}" for other in (result, found))
+        yield f"{found.seamless.tiles:.4g}"
+        yield f"{found.distortion.l2_stretch:.4f}"
 
 
 def main() -> None:

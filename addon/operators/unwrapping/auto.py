@@ -35,7 +35,7 @@ from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
 from .direction_choices import chosen_direction
-from .features import FeatureProperties
+from .features import PLACES, FeatureProperties
 from .seamless import TileSizeProperties
 from .sections import section
 
@@ -306,6 +306,6 @@ class UV_OT_cone_auto_unwrap(
             threads=chosen_threads(),
         )
         if options.seamless is not None:
-            tiles = self.tile_size_options() | {"whole_features": self.straight_whole}
+            tiles = self.tile_size_options() | {"feature_places": PLACES[self.straight_places][0]}
             options = replace(options, seamless=replace(options.seamless, **tiles))
         return options

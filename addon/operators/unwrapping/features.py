@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import native
+from ...core.choices import Choices, enum_items
 from ...core.identifiers import FEATURE_ATTRIBUTE
 from .sections import section
 
@@ -14,6 +15,17 @@ if TYPE_CHECKING:
     from lsgp.run.feature_options import FeatureKinds
 
 ALONG = f'run straight along u or v, as edges with the attribute "{FEATURE_ATTRIBUTE}" do: '
+
+_COST = "Tiles may be smaller for it, and stretch a fifth higher instead of a tenth"
+PLACES: Choices = {
+    "ANYWHERE": ("anywhere", "Anywhere", "Straight edges lie where they cost least, at multiples of 1/256 of a tile"),
+    "HALF": ("half", "Half Tiles", f"Straight edges lie at half tiles, as bricks of every other course end. {_COST}"),
+    "WHOLE": (
+        "whole",
+        "Whole Tiles",
+        f"Straight edges begin and end tiles, as bricks do at the edge of a wall. {_COST}",
+    ),
+}
 
 
 class FeatureProperties:
@@ -43,11 +55,11 @@ class FeatureProperties:
         subtype="ANGLE",
     )
 
-    straight_whole: bpy.props.BoolProperty(
-        name="At Whole Tiles",
-        description="In seamless layouts, straight edges and creases along the tiles begin and end tiles, as bricks do "
-        "at the edge of a wall. Tiles may be smaller for it, and stretch a fifth higher instead of a tenth",
-        default=False,
+    straight_places: bpy.props.EnumProperty(
+        name="Places",
+        description="Where straight edges and creases along the tiles lie in seamless layouts",
+        items=enum_items(PLACES),
+        default="ANYWHERE",
     )
 
     def draw_features(self, layout: bpy.types.UILayout, identifier: str, *, in_tiles: bool) -> None:
@@ -60,7 +72,7 @@ class FeatureProperties:
         if self.straight_creases:
             body.prop(self, "straight_angle")
         if in_tiles:
-            body.prop(self, "straight_whole")
+            body.prop(self, "straight_places")
 
     def feature_kinds(self) -> "FeatureKinds | None":
         """None where none is chosen."""

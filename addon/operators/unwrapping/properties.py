@@ -11,7 +11,7 @@ from ...jobs.tasks.unwrapping import UnwrapSettings
 from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import BORDERS, SEAMS
 from .direction_choices import chosen_direction
-from .features import FeatureProperties
+from .features import PLACES, FeatureProperties
 from .low_stretch import MODES
 from .seamless import SeamlessProperties
 
@@ -118,7 +118,7 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         unfold=UNFOLDINGS[chosen.unfold][0],
         seams=SEAMS[chosen.seams][0],
         border=BORDERS[chosen.border][0],
-        seamless=SeamlessProperties.seamless_options(chosen, whole_features=chosen.straight_whole),
+        seamless=SeamlessProperties.seamless_options(chosen, feature_places=PLACES[chosen.straight_places][0]),
         mode=MODES[chosen.mode][0],
         stretch=chosen.stretch,
         repair=chosen.repair,

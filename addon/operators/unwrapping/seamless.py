@@ -98,8 +98,8 @@ class SeamlessProperties(TileSizeProperties, LatticeProperty):
                 column.prop(self, "texture_size")
             column.prop(self, "mip_levels")
 
-    def seamless_options(self, *, whole_features: bool) -> "lsgp.Seamless | None":
-        """The library's options; None if the layout is not seamless.  whole_features: as there.  Raises InputError."""
+    def seamless_options(self, *, feature_places: str) -> "lsgp.Seamless | None":
+        """The library's options; None if the layout is not seamless.  feature_places: as there.  Raises InputError."""
         if not self.seamless:
             return None
         cell = 1.0
@@ -112,5 +112,5 @@ class SeamlessProperties(TileSizeProperties, LatticeProperty):
             parity=self.parity and self.lattice == "SQUARE",
             coarse_grid=COARSE_GRIDS[self.coarse_grid][0],
             cell=cell,
-            whole_features=whole_features,
+            feature_places=feature_places,
         )

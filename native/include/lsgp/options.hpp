@@ -77,6 +77,13 @@ enum class CoarseGrid {
   relax,   // leave cones off the grid that find no place on it (the paper's section 8)
 };
 
+// Where lines of features lie on a lattice.
+enum class FeaturePlaces {
+  anywhere,  // at whole cells or, where cells are too large for that, at multiples of 1 / 256 of one
+  half,      // at half cells or released, at up to a fifth of L2 stretch instead of a tenth
+  whole,     // likewise at whole cells
+};
+
 // A layout in which a tileable texture shows no seam (the paper's section 8): cone angles are multiples of the
 // lattice's rotation, and translations across cuts map lattice points to lattice points.
 struct Seamless {
@@ -86,7 +93,7 @@ struct Seamless {
                                     // and costs at most a tenth in distortion; small components that need a finer
                                     // one get it for themselves
   bool parity = false;              // square lattice: black and white cells match as well
-  bool whole_features = false;      // features are on whole cells or released, at up to a fifth of L2 stretch
+  FeaturePlaces feature_places = FeaturePlaces::anywhere;
   CoarseGrid coarse_grid = CoarseGrid::refine;
   double cell = 1;  // its side in texture coordinates, a power of two: 1 is a whole tile
 };

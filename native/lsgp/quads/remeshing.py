@@ -248,7 +248,7 @@ def _options(options: Options | None) -> Options:
         arguments.refuse("options.seamless", seamless, remedy)
     if seamless.tiles is not None or seamless.tile_size is not None:
         arguments.refuse("options.seamless", seamless, f"{remedy}; target or size determines the number of quads")
-    return replace(chosen, seamless=replace(seamless, whole_features=True))
+    return replace(chosen, seamless=replace(seamless, feature_places="whole"))
 
 
 def _side(surface: Surface, target: int | None, size: float | None) -> float | None:
@@ -420,7 +420,7 @@ def _whole_or_between(
     # A grid that was refined for its cones is fine enough for the features that can be followed.
     if not has_features or runs_along_features(layout) or _is_refined(layout):
         return layouts, layout
-    between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
+    between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, feature_places="anywhere")))
     other = between.nearest(target, share_of(progress, 0.5, 1.0))
     return (between, other) if feature_share(other) > feature_share(layout) else (layouts, layout)
 

@@ -24,6 +24,7 @@ from ..options import (
     BorderMode,
     CoarseGrid,
     Compactness,
+    FeaturePlaces,
     Lattice,
     Method,
     Mode,
@@ -53,7 +54,7 @@ MOST_COST = 1e6
 AUTO, AUTO_COUNT = "auto", "auto:"
 
 # Options that are fields of `Seamless` under the same names.
-_OF_TILES = ("tiles", "tile_size", "lattice", "parity", "whole_features", "coarse_grid")
+_OF_TILES = ("tiles", "tile_size", "lattice", "parity", "feature_places", "coarse_grid")
 
 
 # What presets do unless --no-NAME is given: the presets that do it, and what the option changes.
@@ -368,11 +369,10 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
         "--parity", action="store_true", default=None, help="the black and white squares of a checker match as well"
     )
     seamless.add_argument(
-        "--whole-features",
-        action="store_true",
-        default=None,
-        help="features and creases along the tiles lie between whole tiles, which may be smaller for it, and may cost "
-        "a fifth of L2 stretch instead of a tenth",
+        "--feature-places",
+        choices=get_args(FeaturePlaces),
+        help="where features and creases along the tiles lie: anywhere, or between half or whole tiles, which may be "
+        "smaller for it, at a cost of up to a fifth of L2 stretch instead of a tenth (default: anywhere)",
     )
     seamless.add_argument(
         "--coarse-grid",

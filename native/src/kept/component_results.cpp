@@ -19,7 +19,7 @@ bool is_equal(const Matrix& a, const Matrix& b) {
 
 // Fields are counted: a further one does not compile before it is compared.
 bool is_same_lattice(const Seamless& a, const Seamless& b) {
-  const auto& [lattice, tiles, tile_size, parity, whole_features, coarse_grid, cell] = a;
+  const auto& [lattice, tiles, tile_size, parity, feature_places, coarse_grid, cell] = a;
   return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
 }
 
@@ -36,7 +36,7 @@ bool has_same_maps(const Options& a, const Options& b) {
 }
 
 bool has_same_features(const Options& a, const Options& b) {
-  return a.straighten == b.straighten && (!a.seamless || a.seamless->whole_features == b.seamless->whole_features);
+  return a.straighten == b.straighten && (!a.seamless || a.seamless->feature_places == b.seamless->feature_places);
 }
 
 bool is_same(const ComponentCones& a, const ComponentCones& b) {

@@ -51,12 +51,13 @@ void set_coordinate(Index of, double value, Eigen::VectorXcd& position) {
 
 }  // namespace
 
-FeatureLayout::FeatureLayout(const FeatureTask& task, const FeatureAlignment& alignment)
+FeatureLayout::FeatureLayout(const FeatureTask& task, const FeatureAlignment& alignment, double coarse_step)
     : task_(task),
       is_cone_(task.mark_cones()),
       reasons_(alignment.reasons),
       aligned_(alignment.lines),
       aligned_length_(total_length(aligned_)),
+      coarse_step_(coarse_step),
       start_(alignment.start) {
   find_coordinates();
   is_large_ = has_many_coordinates();
@@ -291,7 +292,7 @@ void FeatureLayout::find_coordinates() {
     const Eigen::MatrixXd forces(coefficients_.middleCols(i, width));
     compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
   }
-  whole_values_ = WholeValues::among(compliance_.topLeftCorner(line_count_, line_count_));
+  coarse_values_ = find_values(coarse_step_);
   are_fine_values_known_ = false;
   fixed.fixed = rounded_;
   held_corners_ = free_along(task_.surface, reduction, fixed);
@@ -299,19 +300,20 @@ void FeatureLayout::find_coordinates() {
   held_ = free_along(task_.surface, reduction, fixed);
 }
 
-// Only layouts that need not be whole take them.
-void FeatureLayout::find_fine_values() {
-  if (std::exchange(are_fine_values_known_, true)) return;
+// The values of what the lattice rounds in cells, and of lines and distances in these steps.
+std::optional<WholeValues> FeatureLayout::find_values(double step) const {
   Eigen::VectorXd units = Eigen::VectorXd::Ones(line_count_);
-  units.tail(line_count_ - lattice_count_).setConstant(1 / fine_step);
+  units.tail(line_count_ - lattice_count_).setConstant(1 / step);
   const auto of_lines = compliance_.topLeftCorner(line_count_, line_count_);
-  fine_values_ = WholeValues::among(units.asDiagonal() * of_lines * units.asDiagonal());
+  return WholeValues::among(units.asDiagonal() * of_lines * units.asDiagonal());
 }
+
+double FeatureLayout::step_of(Rounding rounding) const { return rounding == Rounding::fine ? fine_step : coarse_step_; }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
 std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding, double too_much) const {
   const bool is_fine = rounding == Rounding::fine;
-  const std::optional<WholeValues>& all = is_fine ? fine_values_ : whole_values_;
+  const std::optional<WholeValues>& all = is_fine ? fine_values_ : coarse_values_;
   if (!all) return std::nullopt;
   WholeValues values = *all;
   const std::ptrdiff_t count = line_count_;
@@ -320,7 +322,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
   for (std::ptrdiff_t i = 0; i < value.size(); ++i) value[i] = scale * value_of(rounded_[i], start_);
   PivotedCholesky cholesky(compliance_);
   Array<char> is_done(count, 0);
-  const auto unit = [&](std::ptrdiff_t i) { return is_fine && i >= lattice_count_ ? fine_step : 1.0; };
+  const auto unit = [&](std::ptrdiff_t i) { return i >= lattice_count_ ? step_of(rounding) : 1.0; };
   const auto may_vanish = [&](std::ptrdiff_t i) {
     return i < length_count_ || (i >= lattice_count_ && i < distance_count_);
   };
@@ -386,6 +388,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
 
 // The cheapest ones, of those that do not follow from other coordinates.
 void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const {
+  const auto off = [&](std::ptrdiff_t i) { return coarse_step_ * std::round(value[i] / coarse_step_) - value[i]; };
   double left = most_cost_of_corners * choice.scale * choice.scale * task_.surface.geometry.total_area;
   for (;;) {
     checkpoint(static_cast<double>(value.size() * (ssize(choice.independent) + 1)));
@@ -393,7 +396,7 @@ void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& chole
     double cheapest = left;
     for (std::ptrdiff_t i = line_count_; i < value.size(); ++i) {
       if (!cholesky.is_independent(i)) continue;
-      const double off = std::round(value[i]) - value[i], cost = off * off / cholesky.left()[i];
+      const double cost = off(i) * off(i) / cholesky.left()[i];
       if (!(cost < cheapest)) continue;
       cheapest = cost;
       best = i;
@@ -401,31 +404,32 @@ void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& chole
     if (best < 0) return;
     left -= cheapest;
     const Eigen::VectorXd column = cholesky.column(best);
-    value += column * ((std::round(value[best]) - value[best]) / column[best]);
+    value += column * (off(best) / column[best]);
     cholesky.eliminate(best, column);
     choice.independent.push_back(static_cast<Index>(best));
   }
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole, bool keeps_corners,
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_coarse, bool keeps_corners,
                                                         const std::function<bool(const Eigen::VectorXcd&)>& accepts) {
-  const std::optional<Choice> whole_lines = choose(density, keeps_corners ? Rounding::with_corners : Rounding::whole);
+  const std::optional<Choice> coarse_lines = choose(density, keeps_corners ? Rounding::with_corners : Rounding::coarse);
   const auto is_of_corner = [&](Index i) { return i >= line_count_; };
-  if (keeps_corners && whole_lines &&
-      std::none_of(whole_lines->independent.begin(), whole_lines->independent.end(), is_of_corner)) {
+  if (keeps_corners && coarse_lines &&
+      std::none_of(coarse_lines->independent.begin(), coarse_lines->independent.end(), is_of_corner)) {
     return std::nullopt;
   }
-  if (whole_lines) {
-    auto out = lay_out(*whole_lines);
+  if (coarse_lines) {
+    auto out = lay_out(*coarse_lines);
     if (out && accepts(*out)) return out;
   }
-  if (must_be_whole) return std::nullopt;
-  find_fine_values();
+  if (must_be_coarse) return std::nullopt;
+  // Only such layouts take them.
+  if (!std::exchange(are_fine_values_known_, true)) fine_values_ = find_values(fine_step);
   const std::optional<Choice> fine_lines = choose(density, Rounding::fine);
   if (!fine_lines) return std::nullopt;
   // The same values would fail in the same way.
-  if (whole_lines && whole_lines->scale == fine_lines->scale &&
-      (whole_lines->values - fine_lines->values).isZero(whole)) {
+  if (coarse_lines && coarse_lines->scale == fine_lines->scale &&
+      (coarse_lines->values - fine_lines->values).isZero(whole)) {
     return std::nullopt;
   }
   auto out = lay_out(*fine_lines);
@@ -469,7 +473,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice) {
   Eigen::VectorXcd position = choice.scale * start_ + system_->expand(factor_->solve(forces));
   const bool keeps_corners = choice.rounding == Rounding::with_corners;
   const bool is_mended = task_.minimize(held(keeps_corners), position);
-  if (is_mended) snap(choice.rounding == Rounding::fine ? fine_step : 1, position);
+  if (is_mended) snap(step_of(choice.rounding), position);
   if (is_mended && task_.is_valid(position) && is_on_lattice(position)) return position;
   if (keeps_corners) return std::nullopt;
   Array<Index> defects = task_.defects_of(position);

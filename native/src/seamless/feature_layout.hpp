@@ -23,8 +23,8 @@ namespace lsgp {
 
 class FeatureLayout {
  public:
-  // alignment: of the task, with some lines.
-  FeatureLayout(const FeatureTask& task, const FeatureAlignment& alignment);
+  // alignment: of the task, with some lines. coarse_step: of their places, a whole cell or half of one.
+  FeatureLayout(const FeatureTask& task, const FeatureAlignment& alignment, double coarse_step);
 
   // The start with features along the axes.
   const Eigen::VectorXcd& start() const { return start_; }
@@ -37,11 +37,11 @@ class FeatureLayout {
   bool loosen();
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
-  // on lines of the lattice or, where cells are too large for that and they need not be whole, at multiples of 1 / 256
-  // of a cell. None where no such layout without flips is found that is accepted.  keeps_corners, of whole ones:
-  // ends and corners of features are also at corners of cells, as far as that costs little; none where that is no other
+  // at coarse steps or, where cells are too large for that and they need not be, at multiples of 1 / 256 of a cell.
+  // None where no such layout without flips is found that is accepted.  keeps_corners, of those at coarse steps: ends
+  // and corners of features are also at such steps along them, as far as that costs little; none where that is no other
   // layout than without.
-  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners,
+  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_coarse, bool keeps_corners,
                                            const std::function<bool(const Eigen::VectorXcd&)>& accepts);
 
   // Whether choosing values took long before features were released.
@@ -54,8 +54,8 @@ class FeatureLayout {
   }
 
  private:
-  // Lines and corners are at whole cells, lines only, or lines at fine steps.
-  enum class Rounding { with_corners, whole, fine };
+  // Lines and corners are at coarse steps, lines only, or lines at fine steps.
+  enum class Rounding { with_corners, coarse, fine };
 
   // A choice of values for the rounded coordinates.
   struct Choice {
@@ -73,7 +73,8 @@ class FeatureLayout {
   void find_lattice_coordinates();
   void find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same);
   void find_corners(const Array<char>& is_on_line);
-  void find_fine_values();
+  std::optional<WholeValues> find_values(double step) const;
+  double step_of(Rounding rounding) const;
   // None where rounding lines costs `too_much` or more.
   std::optional<Choice> round(double scale, Rounding rounding, double too_much) const;
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
@@ -89,6 +90,7 @@ class FeatureLayout {
   PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
   const double aligned_length_;  // before any was released for the lattice
+  const double coarse_step_;     // cells
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
   // Lengths of lines between cones, the lattice's, distances between lines, one of each line, and those along lines of
@@ -111,7 +113,7 @@ class FeatureLayout {
   std::optional<Cholesky<double>> factor_;
   Eigen::SparseMatrix<double> coefficients_;  // (rows, rounded)
   Eigen::MatrixXd compliance_;                // (rounded, rounded) how far each moves under a unit force on another
-  std::optional<WholeValues> whole_values_, fine_values_;  // of the rounded ones; lines in cells, or in fine steps
+  std::optional<WholeValues> coarse_values_, fine_values_;  // of the rounded ones; lines in such steps
 };
 
 }  // namespace lsgp

@@ -71,7 +71,7 @@ GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<Seaml
                        ProgressMonitor& monitor)
     : parity_(options.seamless->parity),
       creases_(options.straighten),
-      whole_features_(options.seamless->whole_features),
+      feature_places_(options.seamless->feature_places),
       lattice_(lattice),
       components_(components),
       monitor_(monitor),
@@ -362,7 +362,7 @@ bool GridSearch::relax_near(std::size_t component, double tiles) {
 void GridSearch::prepare(std::size_t component) {
   const SeamlessComponent& of = components_[component];
   const LatticeDemands demands{lattice_, parity_,         relaxed_[component], of.task->directions,
-                               creases_, whole_features_, *of.alignment};
+                               creases_, feature_places_, *of.alignment};
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 

@@ -125,7 +125,8 @@ class GridSearch {
 
   void restore_relaxed(std::size_t component);
 
-  const bool parity_, creases_, whole_features_;
+  const bool parity_, creases_;
+  const FeaturePlaces feature_places_;
   const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   Array<double> area_;  // of the components' surfaces

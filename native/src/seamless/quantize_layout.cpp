@@ -199,9 +199,10 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
 
 // Leaves features_ empty on soft surfaces without marked features and where no feature can be aligned.
 void LayoutQuantizer::align_features() {
-  const double most_growth = demands_.whole_features ? 1.2 : 1.1;  // of the L2 stretch
+  const bool is_coarse = demands_.feature_places != FeaturePlaces::anywhere;
+  const double most_growth = is_coarse ? 1.2 : 1.1;  // of the L2 stretch
   // Quads may follow any creases; a texture gets its direction from most of them.
-  const double least_of_creases = demands_.whole_features ? 0 : 0.75;
+  const double least_of_creases = is_coarse ? 0 : 0.75;
   const double least_common = is_turned_ ? 0.1 : 0;  // arcs do not turn what is upright
   const PerHalfedge<char> feature =
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
@@ -216,7 +217,8 @@ void LayoutQuantizer::align_features() {
   if (!alignment) alignment = align_with_axes(task, feature, start_, {most_l2_, least_of_creases, least_common});
   release_reasons_ = alignment->reasons;
   if (alignment->lines.empty()) return;
-  features_ = std::make_unique<FeatureLayout>(task, *alignment);
+  features_ =
+      std::make_unique<FeatureLayout>(task, *alignment, demands_.feature_places == FeaturePlaces::half ? 0.5 : 1);
   energy_ = std::max(energy_, measure_energy(features_->start()));
 }
 
@@ -234,9 +236,10 @@ PerHalfedge<ReleaseReason> LayoutQuantizer::release_reasons(const QuantizedLayou
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double density,
                                                                        const LayoutEffort& effort) const {
-  const bool must_be_whole = demands_.whole_features && effort.features == LayoutEffort::Features::required;
+  const bool must_be_coarse =
+      demands_.feature_places != FeaturePlaces::anywhere && effort.features == LayoutEffort::Features::required;
   for (const bool keeps_corners : {true, false}) {
-    if (keeps_corners && !must_be_whole) continue;
+    if (keeps_corners && !must_be_coarse) continue;
     double energy = 0;
     const auto accepts = [&](const Eigen::VectorXcd& position) {
       const Jacobians jacobians = measure_jacobians({mesh_, geometry_}, cut_mesh_, position);
@@ -244,7 +247,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double de
       return energy <= effort.most_growth * energy_ &&
              l2_stretch(geometry_, jacobians) <= (keeps_corners ? most_l2_with_corners_ : most_l2_);
     };
-    std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole, keeps_corners, accepts);
+    std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_coarse, keeps_corners, accepts);
     if (!position) continue;
     if (!demands_.directions.empty()) {
       *position *= lattice_.unit(find_upward_turn(*position).turns_on_lattice());

@@ -10,6 +10,7 @@
 
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
+#include "lsgp/options.hpp"
 #include "pipeline/component_map.hpp"
 #include "plane/point_lattice.hpp"
 #include "repair/newton.hpp"
@@ -52,7 +53,7 @@ struct LatticeDemands {
   const Array<Index>& relaxed;                 // cones that need not lie on the lattice
   const TextureDirections& directions;         // what v is to run along
   bool creases;                                // run along lines of the lattice, as marked features do
-  bool whole_features;                         // which are to be at whole cells, at more stretch
+  FeaturePlaces feature_places;                // of creases and marked features
   std::optional<FeatureAlignment>& alignment;  // of the map, or empty, which is filled where features are aligned
 };
 

@@ -8,7 +8,7 @@ from installed import EXTENSION
 from scenes import add_cone_cube
 
 SEAMLESS_ONLY = {
-    "straight_whole",
+    "straight_places",
     "lattice",
     "tile_fit",
     "tiles",
@@ -93,7 +93,7 @@ def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
 def test_options_of_seamless_layouts_are_drawn_only_with_it():
     plain, seamless = panel(), panel(seamless=True)
     straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
-    of_grid = {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe", "straight_whole"}
+    of_grid = {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe", "straight_places"}
     assert seamless.keys() - plain.keys() == of_grid | straight
     assert plain.keys() - seamless.keys() == {"correct_aspect", "margin_method", "margin"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
-from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_grid, add_tube, changed, edit, snapshot
+from scenes import UvMap, add_ball, add_cone_cube, add_grid, add_tube, changed, edit, snapshot
 from texture_ways import STORED, off, way_of
 
 drawn_on, picked_objects = addon.jobs.sessions.drawn_on, addon.jobs.sessions.picked_objects

@@ -195,7 +195,9 @@ def test_what_the_map_misses_is_told_at_each_edge():
     shown = content.build_content(ball, report)
     told = {tuple(np.round(place, 4)): error for place, error in zip(shown.missed_places, shown.missed_by, strict=True)}
     assert len(told) > 10
-    faces = [{f.index for f in ball.data.polygons if set(ball.data.edges[e].vertices) <= set(f.vertices)} for e in edges]
+    faces = [
+        {f.index for f in ball.data.polygons if set(ball.data.edges[e].vertices) <= set(f.vertices)} for e in edges
+    ]
     for edge, beside in zip(edges, faces, strict=True):
         # Those beside a face with two marked edges have a direction in between there.
         if not any(beside & others for others in faces if others is not beside):

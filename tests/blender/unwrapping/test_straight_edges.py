@@ -37,15 +37,15 @@ def off_axis(obj: bpy.types.Object, edges: set[tuple[int, int]]) -> float:
     return worst
 
 
-def off_tiles(obj: bpy.types.Object, edges: set[tuple[int, int]]) -> float:
-    """The most that one of these edges is off the nearest line between whole tiles, on any of its sides."""
+def off_tiles(obj: bpy.types.Object, edges: set[tuple[int, int]], step: float) -> float:
+    """The most that one of these edges is off the nearest multiple of a step in tiles, on any of its sides."""
     uv, mesh, worst = UvMap(obj).uv, obj.data, 0.0
     for face in mesh.polygons:
         loops = list(face.loop_indices)
         for a, b in zip(loops, loops[1:] + loops[:1], strict=True):
             if tuple(sorted((mesh.loops[a].vertex_index, mesh.loops[b].vertex_index))) in edges:
                 along = int(np.abs(uv[a] - uv[b]).argmin())
-                worst = max(worst, float(np.abs(uv[a] - np.round(uv[a]))[along]))
+                worst = max(worst, float(np.abs(uv[a] - step * np.round(uv[a] / step))[along]))
     return worst
 
 
@@ -69,20 +69,21 @@ def test_edges_with_the_attribute_are_straight(preset: str, in_edit_mode: bool) 
     assert off_axis(box, loop) <= rounding
 
 
-@pytest.mark.parametrize("is_whole", [False, True])
-def test_they_are_at_whole_tiles_where_that_is_chosen(is_whole: bool) -> None:
+@pytest.mark.parametrize("chosen", ["ANYWHERE", "HALF", "WHOLE"])
+def test_they_are_at_whole_or_half_tiles_where_that_is_chosen(chosen: str) -> None:
     box = add_box()
     loop = edges_where(box, lambda place: abs(place[2] + SIZES[2] / 2) < 1e-6)
     mark_attribute(box, loop)
-    options = {"preset": "TILE", "straighten": False, "straight_whole": is_whole}
+    options = {"preset": "TILE", "straighten": False, "straight_places": chosen}
     assert bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
     assert off_axis(box, loop) == 0
-    assert (off_tiles(box, loop) == 0) == is_whole
-    if is_whole:
+    assert (off_tiles(box, loop, 1) == 0) == (chosen == "WHOLE")
+    assert (off_tiles(box, loop, 0.5) == 0) == (chosen != "ANYWHERE")
+    if chosen == "WHOLE":
         places = np.array([vertex.co for vertex in box.data.vertices])
         mark(box, np.flatnonzero((np.abs(np.abs(places) / SIZES - 1) < 1e-6).all(axis=1)).tolist())
-        assert bpy.ops.uv.cone_unwrap(seamless=True, straight_whole=True) == {"FINISHED"}
-        assert off_tiles(box, loop) == 0
+        assert bpy.ops.uv.cone_unwrap(seamless=True, straight_places="WHOLE") == {"FINISHED"}
+        assert off_tiles(box, loop, 1) == 0
 
 
 def test_without_marks_they_are_not() -> None:

@@ -229,7 +229,7 @@ WRONG_USAGE = {
     "tile size without seamless": ([*UNWRAP, "--tile-size", "0.1"], "--tile-size"),
     "lattice without seamless": ([*UNWRAP, "--lattice", "square"], "--lattice"),
     "parity without seamless": ([*UNWRAP, "--parity"], "--parity"),
-    "whole features without seamless": ([*UNWRAP, "--whole-features"], "--whole-features"),
+    "places of features without seamless": ([*UNWRAP, "--feature-places", "whole"], "--feature-places"),
     "coarse grid without seamless": ([*UNWRAP, "--coarse-grid", "refine"], "--coarse-grid"),
     "texture size without seamless": ([*UNWRAP, "--texture-size", "1024"], "--texture-size"),
     "mip levels without seamless": ([*UNWRAP, "--mip-levels", "0"], "--mip-levels"),

@@ -60,15 +60,15 @@ def lines_of(path: Path, edges: list[list[int]]) -> list[float]:
     return found
 
 
-def test_features_at_whole_tiles(lsgp, cube_files: Path) -> None:
+def test_features_at_whole_and_half_tiles(lsgp, cube_files: Path) -> None:
     edges = around(cube_files)
     (cube_files / "loop.json").write_text(json.dumps(edges))
     off = {}
-    for options in ((), ("--whole-features",)):
-        assert share(lsgp, "--features", "loop.json", "--no-straighten", *options) == 1
+    for places in ("anywhere", "half", "whole"):
+        assert share(lsgp, "--features", "loop.json", "--no-straighten", "--feature-places", places) == 1
         lines = np.array(lines_of(cube_files / "out.obj", edges))
-        off[options] = np.abs(lines - np.round(lines)).max()
-    assert off[("--whole-features",)] == 0 < off[()]
+        off[places] = [np.abs(lines - step * np.round(lines / step)).max() for step in (1, 0.5)]
+    assert off["whole"][0] == off["half"][1] == 0 < min(off["half"][0], off["anywhere"][1])
 
 
 def test_kinds_of_edges(lsgp, cube_files: Path) -> None:

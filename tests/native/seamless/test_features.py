@@ -65,20 +65,24 @@ def ends(result: lsgp.Result, halfedges: NDArray[np.int64]) -> NDArray[np.float6
 
 
 @pytest.mark.parametrize("marked", [False, True])
-def test_features_lie_between_whole_tiles_where_that_is_asked_for(marked: bool) -> None:
-    """Those of a spool are as far apart as they happen to be; without it some are between lines."""
+def test_features_lie_at_whole_or_half_tiles_where_that_is_asked_for(marked: bool) -> None:
+    """Those of a spool are as far apart as they happen to be; without it some are in between."""
     profile = np.array([1.0, 1.0, 0.5, 0.5, 1.0, 1.0]), np.array([0.0, 0.2, 0.4, 1.4, 1.6, 1.8])
     spool = surface(closed.lathe(*profile, 32, caps=(True, True)))
     spool = replace(spool, features=lsgp.feature_edges(spool, angle=SHARP)) if marked else spool
-    shares = []
-    for is_whole in (False, True):
-        options = replace(TILE, seamless=replace(TILE.seamless, whole_features=is_whole))
+    shares, sizes = {}, {}
+    for places in ("anywhere", "half", "whole"):
+        options = replace(TILE, seamless=replace(TILE.seamless, feature_places=places))
         result = lsgp.auto_unwrap(spool, preset="tile", options=options, creases=False)
         both = ends(result, creases(meshes.make(spool.positions, spool.triangles)))
-        at_whole = ((both[:, 0] == both[:, 1]) & (both[:, 0] == np.round(both[:, 0]))).any(axis=1)
-        shares.append(at_whole.mean())
+        for step in (1, 0.5):
+            at_step = ((both[:, 0] == both[:, 1]) & (both[:, 0] % step == 0)).any(axis=1)
+            shares[places, step] = at_step.mean()
+        sizes[places] = result.seamless.tile_size
         assert undeclared_faults(spool, result, options) == []
-    assert shares[0] < 0.9 < shares[1]
+    assert shares["anywhere", 0.5] < 0.9 < min(shares["half", 0.5], shares["whole", 1])
+    # Half tiles are not whole ones, but larger.
+    assert shares["half", 1] < 0.9 and sizes["half"] > sizes["whole"]
 
 
 @pytest.mark.parametrize("name", HARD)
