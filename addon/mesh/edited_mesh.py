@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import versions
 from ..core.identifiers import ALONG_ATTRIBUTE, UP_ATTRIBUTE
 from .arrays import rows
 from .manifold_triangles import manifold_triangles
@@ -133,9 +134,9 @@ class EditedMesh(MeshReader):
         return None if layer is None else rows([face[layer][:] for face in self._bm.faces], 3)
 
     def along_sides(self) -> NDArray[np.int32]:
-        layer = self._bm.edges.layers.bool.get(ALONG_ATTRIBUTE)
+        flags = versions.edited_edge_flags(self._mesh, ALONG_ATTRIBUTE)
         self._bm.faces.index_update()
-        marked = [edge for edge in ([] if layer is None else self._bm.edges) if edge[layer]]
+        marked = [self._bm.edges[number] for number in np.flatnonzero(flags).tolist()]
         return rows([[*(v.index for v in e.verts), face.index] for e in marked for face in e.link_faces], 3, np.int32)
 
     def _uv_layer(self) -> bmesh.types.BMLayerItem | None:

@@ -278,10 +278,9 @@ class StoredMesh(MeshReader):
 
     def _edge_flags(self, name: str) -> NDArray[np.bool_]:
         """(e,) a boolean attribute on edges; False where there is no such attribute."""
-        attribute = self._mesh.attributes.get(name)
-        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", "BOOLEAN"):
+        if not versions.has_edge_flags(self._mesh, name):
             return np.zeros(len(self.edges), bool)
-        return read_array(attribute.data, "value", bool)
+        return read_array(self._mesh.attributes[name].data, "value", bool)
 
     @property
     def _shown(self) -> NDArray[np.bool_]:

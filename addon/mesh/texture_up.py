@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
+from ..core import versions
 from ..core.errors import Refused
 from ..core.identifiers import ALONG_ATTRIBUTE, UP_ATTRIBUTE
 from . import changes
@@ -46,32 +47,22 @@ def write_directions(mesh: bpy.types.Mesh, directions: Directions) -> None:
 def mark_edges(mesh: bpy.types.Mesh) -> int:
     """Mark the selected edges of faces of a mesh in edit mode.  Returns how many there are.  Raises Refused."""
     _require(mesh, ALONG_ATTRIBUTE, "EDGE", "BOOLEAN", "a boolean attribute on edges")
-    bm = bmesh.from_edit_mesh(mesh)
-    layers = bm.edges.layers.bool
-    # A new layer before the edges are listed, which it makes anew.
-    layer = layers.get(ALONG_ATTRIBUTE) or layers.new(ALONG_ATTRIBUTE)
-    edges = [edge for edge in bm.edges if edge.select and edge.link_faces]
-    for edge in edges:
-        edge[layer] = True
-    if not any(edge[layer] for edge in bm.edges):
-        layers.remove(layer)
-    _tell(mesh)
-    return len(edges)
+    chosen = [edge.select and len(edge.link_faces) > 0 for edge in bmesh.from_edit_mesh(mesh).edges]
+    if any(chosen):
+        flags = versions.edited_edge_flags(mesh, ALONG_ATTRIBUTE) | chosen
+        versions.set_edited_edge_flags(mesh, ALONG_ATTRIBUTE, flags)
+        _tell(mesh)
+    return sum(chosen)
 
 
 def clear_edges(mesh: bpy.types.Mesh) -> int:
     """Take the marks off the selected edges of a mesh in edit mode.  Returns how many there were."""
-    bm = bmesh.from_edit_mesh(mesh)
-    layers = bm.edges.layers.bool
-    layer = layers.get(ALONG_ATTRIBUTE)
-    edges = [edge for edge in ([] if layer is None else bm.edges) if edge[layer] and edge.select]
-    for edge in edges:
-        edge[layer] = False
-    if edges:
-        if not any(edge[layer] for edge in bm.edges):
-            layers.remove(layer)
+    flags = versions.edited_edge_flags(mesh, ALONG_ATTRIBUTE)
+    chosen = flags & [edge.select for edge in bmesh.from_edit_mesh(mesh).edges]
+    if chosen.any():
+        versions.set_edited_edge_flags(mesh, ALONG_ATTRIBUTE, flags & ~chosen)
         _tell(mesh)
-    return len(edges)
+    return int(chosen.sum())
 
 
 def require_up_attribute(mesh: bpy.types.Mesh) -> None:

@@ -154,6 +154,26 @@ def test_errors_are_written_at_strokes_that_the_map_misses():
     settings.up = True
 
 
+def test_arrows_and_errors_are_drawn_at_marked_edges():
+    ball = add_ball(cuts=9)
+    attribute = ball.data.attributes.new(addon.core.identifiers.ALONG_ATTRIBUTE, "BOOLEAN", "EDGE")
+    attribute.data.foreach_set("value", [number % 5 == 0 for number in range(len(ball.data.edges))])
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    area().spaces.active.region_3d.view_distance = 5.0
+    shown = yield from pixels()
+    take_picture("marked_edges")
+    content = cache.entry(ball).content
+    assert len(content.along_lines) == 3 * -(-len(ball.data.edges) // 5) and not len(content.up_lines)
+    assert len(content.missed_by) > 10
+    settings = bpy.context.window_manager.cone_unwrap_overlay
+    settings.up = False
+    hidden = yield from pixels()
+    assert all(count(hidden, color) < count(shown, color) for color in (look().up, look().text))
+    settings.up = True
+    edit(ball, select="DESELECT")
+    assert count((yield from pixels()), look().up) > count(hidden, look().up)
+
+
 def test_flipped_and_overlapping_faces_are_drawn():
     cube = unwrapped(add_cone_cube)
     plain = yield from pixels()
