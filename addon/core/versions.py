@@ -2,7 +2,8 @@
 """Differences between Blender's versions: where flags of UVs are stored, whether a material has nodes, and how flags of
 edges are accessed in edit mode.
 
-The flags of UVs can be read from a mesh in object mode or from a copy; Blender hides the attributes of a mesh in edit mode.
+The flags of UVs can be read from a mesh in object mode or from a copy; Blender hides the attributes of a mesh in edit
+mode.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 # 5.0 has one UV selection for all layers and nodes in every material.
 SINCE_5 = bpy.app.version >= (5, 0)
-# Before 4.5 meshes in edit mode give no access to them.
+# Older ones, such as 4.3, give no access to them on meshes in edit mode.
 _HAS_FLAGS_OF_EDGES = hasattr(bmesh.types.BMLayerAccessEdge, "bool")
 
 
