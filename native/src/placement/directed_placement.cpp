@@ -80,7 +80,8 @@ std::optional<PlacedCones> turn_toward_strokes(const PlacementTask& task, const 
                                                const PlacementOptions& options, const PlacedCones& usual,
                                                ProgressMonitor& monitor) {
   const TextureDirections strokes = directions_in_triangles(task.mesh, directions);
-  if (!options.follow_strokes || usual.cones.vertices.empty() || !are_strokes(strokes, task.geometry)) return std::nullopt;
+  if (!options.follow_strokes || usual.cones.vertices.empty() || !are_strokes(strokes, task.geometry))
+    return std::nullopt;
   const int turns = options.lattice ? rotation_order(*options.lattice) : 1;
   MapTrial trial(task, monitor);
   const auto missed = [&](const ComponentCones& cones) {
