@@ -99,24 +99,10 @@ LeastDistortion least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
   return {std::move(bounds), std::move(curvature)};
 }
 
-// Curvatures near those of least distortion with which strokes are parallel, as far as the price of their misfit makes
-// that worth its distortion: to second order, the logarithm of the L2 stretch is twice the variance of the log scale.
-Eigen::VectorXd toward_strokes(const LeastDistortion& least, const LogScale& scale, const LogScale::Variance& misfit,
-                               double price) {
-  constexpr double ridge = 1e-9;  // relative; the sum may have no effect on the variance
-  Eigen::MatrixXd hessian = 4 * scale.variance().hessian + 2 * price * misfit.hessian;
-  hessian.diagonal().array() += ridge * hessian.trace();
-  BoxProgram program(scale.balanced());
-  program.set_hessian(std::move(hessian));
-  const Eigen::VectorXd gradient = 2 * price * (misfit.gradient + misfit.hessian * least.curvature);
-  return least.curvature +
-         program.minimize(gradient, least.bounds.low - least.curvature, least.bounds.high - least.curvature);
-}
-
-// The curvatures that `choose(misfit, price)` returns for the highest price that costs little stretch, or the usual
-// ones.
+// The curvatures that `choose(misfit, price)` returns for the highest price of the strokes' misfit that costs little
+// stretch, or the usual ones.
 template <typename Choose>
-Eigen::VectorXd follow_strokes(const LogScale& scale, const StrokeFit& fit, Eigen::VectorXd usual,
+Eigen::VectorXd follow_strokes(const LogScale& scale, const StrokeFit& fit, const Eigen::VectorXd& usual,
                                const Choose& choose) {
   constexpr double prices[] = {16, 4, 1, 0.25, 0.0625};  // of 1 radian^2, in the logarithm of the L2 stretch
   constexpr double most_growth = 1.1;
@@ -128,6 +114,22 @@ Eigen::VectorXd follow_strokes(const LogScale& scale, const StrokeFit& fit, Eige
     if (fit.misfit(found) < missed && l2(found) <= most_l2) return found;
   }
   return usual;
+}
+
+// The same with curvatures within the bounds of those of least distortion. To second order, the logarithm of the L2
+// stretch grows by twice what the variance of the log scale does.
+Eigen::VectorXd follow_strokes(const LogScale& scale, const StrokeFit& fit, const LeastDistortion& least) {
+  constexpr double ridge = 1e-9;  // relative; the sum may have no effect on the variance
+  const Eigen::MatrixXd variance = scale.variance().hessian;
+  const Eigen::VectorXd low = least.bounds.low - least.curvature, high = least.bounds.high - least.curvature;
+  return follow_strokes(scale, fit, least.curvature, [&](const LogScale::Variance& misfit, double price) {
+    Eigen::MatrixXd hessian = 4 * variance + 2 * price * misfit.hessian;
+    hessian.diagonal().array() += ridge * hessian.trace();
+    BoxProgram program(scale.balanced());
+    program.set_hessian(std::move(hessian));
+    const Eigen::VectorXd gradient = 2 * price * (misfit.gradient + misfit.hessian * least.curvature);
+    return Eigen::VectorXd(least.curvature + program.minimize(gradient, low, high));
+  });
 }
 
 // If it is a number worth comparing.
@@ -301,19 +303,12 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);
   } else {
-    LeastDistortion least = least_distortion(mesh, asked, scale);
-    if (rule == PrescriptionRule::straightness) {
-      curvature = straightness(system, asked, least.curvature, findings);
-    } else {
-      curvature = least.curvature;
-      if (strokes != nullptr) {
-        fit.emplace(fit_of_curvature(scale, system.all_cuts(), *strokes, asked.rotation_order));
-        if (asked.rotation_order == 0) {
-          curvature = follow_strokes(scale, *fit, least.curvature, [&](const LogScale::Variance& form, double price) {
-            return toward_strokes(least, scale, form, price);
-          });
-        }
-      }
+    const LeastDistortion least = least_distortion(mesh, asked, scale);
+    const bool is_straight = rule == PrescriptionRule::straightness;
+    curvature = is_straight ? straightness(system, asked, least.curvature, findings) : least.curvature;
+    if (strokes != nullptr && !is_straight && scale.has_effects()) {
+      fit.emplace(fit_of_curvature(scale, system.all_cuts(), *strokes, asked.rotation_order));
+      if (asked.rotation_order == 0) curvature = follow_strokes(scale, *fit, least);
     }
   }
   if (asked.rotation_order > 0) {

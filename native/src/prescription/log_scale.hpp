@@ -48,6 +48,8 @@ class LogScale {
   Eigen::VectorXd evaluate_held(const Eigen::VectorXd& cone_curvature) const;
   // The same with curvatures at any vertices, which need not be cones; one back-substitution.
   Eigen::VectorXd evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
+  // Whether the effects of cones are known; there may be too many.
+  bool has_effects() const { return !is_coarse_; }
   // The change of that per unit of a cone's curvature.
   auto effect(Index cone) const { return green().col(cone); }
 
