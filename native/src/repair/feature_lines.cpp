@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/checkpoint.hpp"
 #include "creases/features.hpp"
 
 namespace lsgp {
@@ -219,6 +220,7 @@ class CornerOpener {
   static constexpr double most_bend = 1.25;   // of a line that is turned, radians
   static constexpr double least_cost = 1e-3;  // of turning a line, relative to its length
   static constexpr double rounding = 1e-6;    // of quarter turns
+  static constexpr double operations_a_wedge = 20;
 
   // Between lines that follow each other counterclockwise around a vertex.
   struct Wedge {
@@ -291,6 +293,7 @@ class CornerOpener {
 
   // Turns the line that gains most for what it costs, if any does.
   bool turn_one() {
+    checkpoint(operations_a_wedge * static_cast<double>(wedges_.size()));
     Index best = none;
     int best_by = 0;
     double most = 0;

@@ -292,6 +292,7 @@ REVIEWED = {
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
         ("while (!is_border(prev(h)))", AROUND_A_VERTEX, SHORT),
+        ("while (turn_one())", "opens a corner by a quarter turn or more each time, and closes none as far", OWN),
         ("for (Index begin = 0, end = 0; begin < ssize(angle); begin = end)", "passes an edge each time", SHORT),
         ("while (end < ssize(angle) && axis[end] == axis[begin])", "edges, each once", SHORT),
     ],
