@@ -113,32 +113,39 @@ PlacedCones place_alone(const PlacementTask& task, const Positions& directions, 
   return beside ? std::move(*beside) : std::move(found);
 }
 
-// The cones without regard to strokes.  results: of the component, or null.
-PlacedCones place_usual(const Component& component, const PlacementTask& task, const Positions& directions,
-                        const PlacementRules& rules, ComponentResults* results, std::vector<Finding>& findings) {
-  if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
-  const PlacementInput input{task.existing, task.allowed, task.mirrored, directions, rules.options};
+// A component and what there is of it.
+struct OfComponent {
+  const Component& component;
+  const PlacementTask& task;
+  ComponentResults* results;  // or null
+  Positions directions = {};  // (m, 3), or empty
+};
+
+// The cones without regard to strokes.
+PlacedCones place_usual(const OfComponent& of, const PlacementRules& rules, std::vector<Finding>& findings) {
+  const PlacementTask& task = of.task;
+  if (auto copied = rules.twins.place(of.component, task, rules.monitor)) return std::move(*copied);
+  const PlacementInput input{task.existing, task.allowed, task.mirrored, of.directions, rules.options};
   PlacedCones placed;
-  const PlacementResult* known = results == nullptr ? nullptr : results->find_placement(input);
+  const PlacementResult* known = of.results == nullptr ? nullptr : of.results->find_placement(input);
   if (known != nullptr) {
     static_cast<ConePlacement&>(placed) = known->placed;
     findings.insert(findings.end(), known->found.begin(), known->found.end());
   } else {
     const auto before = static_cast<std::ptrdiff_t>(findings.size());
-    placed = place_alone(task, directions, rules, findings);
-    if (results != nullptr) results->keep_placement(input, {placed, {findings.begin() + before, findings.end()}});
+    placed = place_alone(task, of.directions, rules, findings);
+    if (of.results != nullptr) of.results->keep_placement(input, {placed, {findings.begin() + before, findings.end()}});
   }
-  rules.twins.keep(component, task, placed);
+  rules.twins.keep(of.component, task, placed);
   return placed;
 }
 
-PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
-                     ComponentResults* results, std::vector<Finding>& findings) {
-  Positions directions;
-  if (rules.surface.directions.rows() > 0) directions = directions_on(component, rules.surface.directions);
-  PlacedCones usual = place_usual(component, task, directions, rules, results, findings);
-  if (directions.rows() == 0) return usual;
-  auto toward = turn_toward_strokes(task, directions, rules.options, usual, rules.monitor);
+PlacedCones place_on(OfComponent of, const PlacementRules& rules, std::vector<Finding>& findings) {
+  const bool has_directions = rules.surface.directions.rows() > 0;
+  if (has_directions) of.directions = directions_on(of.component, rules.surface.directions);
+  PlacedCones usual = place_usual(of, rules, findings);
+  if (!has_directions) return usual;
+  auto toward = turn_toward_strokes(of.task, of.directions, rules.options, usual, rules.monitor);
   return toward ? std::move(*toward) : std::move(usual);
 }
 
@@ -183,7 +190,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     }
     const PlacementTask task{{component.mesh, geometry}, cones, allowed, mirrored};
     PlacedCones found =
-        place_on(component, task, {surface, options, twins, work.monitor()}, work.results(component), findings);
+        place_on({component, task, work.results(component)}, {surface, options, twins, work.monitor()}, findings);
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];

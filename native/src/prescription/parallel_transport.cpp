@@ -75,20 +75,12 @@ struct TurningPrice {
   Eigen::VectorXd gradient;
 };
 
-// The energy of the twist, and what strokes miss by it.  frames: (m) of the metric.
-TurningPrice price_of_turning(const CutSurface& surface, const HarmonicOneForm& twist, const Eigen::MatrixXd& loops,
-                              const Eigen::VectorXd& frames, const std::optional<FollowedStrokes>& followed,
-                              double unit) {
-  TurningPrice out{twist.energy(loops), Eigen::VectorXd::Zero(loops.cols())};
-  if (!followed) return out;
-  const Strokes strokes = sample_strokes(surface.geometry, followed->directions);
+// What strokes miss, by the same x.  frames: (m) of the metric.
+StrokeFit fit_of_turning(const Strokes& strokes, const HarmonicOneForm& twist, const Eigen::MatrixXd& loops,
+                         const Eigen::VectorXd& frames, double unit) {
   Eigen::MatrixXd effect(ssize(strokes.triangles), loops.cols());
   for (Eigen::Index k = 0; k < loops.cols(); ++k) effect.col(k) = twist.spread(loops.col(k))(strokes.triangles);
-  const StrokeFit fit(strokes.weight, strokes.angle + frames(strokes.triangles), std::move(effect), unit);
-  const LogScale::Variance misfit = fit.form_near(Eigen::VectorXd::Zero(loops.cols()));
-  out.form += followed->price * misfit.hessian;
-  out.gradient += followed->price * misfit.gradient;
-  return out;
+  return {strokes.weight, strokes.angle + frames(strokes.triangles), std::move(effect), unit};
 }
 
 // By how much the loops about handles turn otherwise than in the metric, radians, for rotations that are multiples of a
@@ -154,7 +146,14 @@ ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, cons
   const Eigen::MatrixXd loops = loop_changes(metric.nodes);
   const HarmonicOneForm twist(surface, surface.cut_graph);
   const double unit = 2 * M_PI / (flat ? 1 : rotation_order);
-  const TurningPrice price = price_of_turning(surface, twist, loops, metric.frames, strokes, unit);
+  const Eigen::VectorXd as_in_metric = Eigen::VectorXd::Zero(loops.cols());
+  TurningPrice price{twist.energy(loops), as_in_metric};
+  if (strokes) {
+    const Strokes sample = sample_strokes(surface.geometry, strokes->directions);
+    const LogScale::Variance misfit = fit_of_turning(sample, twist, loops, metric.frames, unit).form_near(as_in_metric);
+    price.form += strokes->price * misfit.hessian;
+    price.gradient += strokes->price * misfit.gradient;
+  }
   change_ = loops * choose_turning(price, metric.nodes, metric.natural, unit);
   twist_ = twist.spread(change_);
 }
