@@ -313,10 +313,10 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   }
   if (asked.rotation_order > 0) {
     const Eigen::VectorXd wanted = curvature;
-    curvature = quantize_curvature(mesh, asked, scale, wanted, asked.rotation_order);
+    curvature = quantize_curvature(asked, scale, wanted, asked.rotation_order);
     if (fit) {
       curvature = follow_strokes(scale, *fit, curvature, [&](const LogScale::Variance& form, double price) {
-        return quantize_curvature(mesh, asked, scale, wanted, asked.rotation_order, PricedForm{form, price});
+        return quantize_curvature(asked, scale, wanted, asked.rotation_order, PricedForm{form, price});
       });
     }
   } else if (border.balanced && curvature.size() > 0) {

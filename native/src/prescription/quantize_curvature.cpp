@@ -114,9 +114,9 @@ int turns_of(double angle, int rotation_order) {
   return static_cast<int>(std::lround(angle * rotation_order / (2 * M_PI)));
 }
 
-Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
-                                   const Eigen::VectorXd& wanted, int rotation_order,
-                                   const std::optional<PricedForm>& priced) {
+Eigen::VectorXd quantize_curvature(const ComponentCones& cones, const LogScale& scale, const Eigen::VectorXd& wanted,
+                                   int rotation_order, const std::optional<PricedForm>& priced) {
+  const HalfedgeMesh& mesh = scale.mesh();
   const Eigen::Index k = wanted.size();
   if (k == 0) return wanted;
   TurnBounds widest = widest_bounds(mesh, cones, rotation_order);

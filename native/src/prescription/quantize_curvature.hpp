@@ -25,9 +25,8 @@ struct PricedForm {
 // Gauss-Bonnet, pairs of cones exchange turns while that lowers the area-weighted variance of the log scale. Given
 // angles that are multiples are kept. Angles are bounded by the triangles around them.
 // scale: with the cones added, in the same order.  priced: what else counts. Throws SEAMLESS_IMPOSSIBLE.
-Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
-                                   const Eigen::VectorXd& wanted, int rotation_order,
-                                   const std::optional<PricedForm>& priced = std::nullopt);
+Eigen::VectorXd quantize_curvature(const ComponentCones& cones, const LogScale& scale, const Eigen::VectorXd& wanted,
+                                   int rotation_order, const std::optional<PricedForm>& priced = std::nullopt);
 
 // The multiple of 2 pi / rotation_order nearest to an angle, and its factor.
 int turns_of(double angle, int rotation_order);

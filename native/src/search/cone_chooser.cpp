@@ -299,7 +299,7 @@ ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
 ConeChoice ConeChooser::quantized(ConeChoice choice, int rotation_order) {
   scale_.set_cones(choice.vertices);
   const ComponentCones cones = with_given_angles(choice.vertices);
-  choice.curvature = quantize_curvature(task_.mesh, cones, scale_, choice.curvature, rotation_order);
+  choice.curvature = quantize_curvature(cones, scale_, choice.curvature, rotation_order);
   choice.predicted_l2 = scale_.predicted_l2(scale_.evaluate(choice.curvature));
   return choice;
 }
