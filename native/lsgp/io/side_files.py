@@ -181,8 +181,7 @@ class DensityFile:
                 "vertices of the file, counted from 0.",
             )
         density = np.ones(vertex_count)
-        for vertex, value in zip(self.vertices.tolist(), self.values.tolist(), strict=True):
-            density[vertex] = value
+        density[self.vertices] = self.values
         return density
 
 

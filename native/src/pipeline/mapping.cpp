@@ -44,6 +44,12 @@ bool all_given(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
+// Whether angles are chosen for least distortion.
+bool chooses_angles(const Options& options, const ComponentCones& cones) {
+  return options.prescription == PrescriptionRule::least_distortion ||
+         (options.prescription == PrescriptionRule::manual && !all_given(cones));
+}
+
 bool closes_holes(const ComponentMap& map) {
   const PerLoop<char>& closed = map.curvature.needs_no_cut;
   return std::find(closed.begin(), closed.end(), 1) != closed.end();
@@ -198,9 +204,7 @@ double Mapping::l2_of(const ComponentMap& map) const {
 }
 
 FoundMap Mapping::find_valid_map(const ComponentTask& task) {
-  const bool is_free = repairs_ && task.cones.rotation_order == 0 &&
-                       (options_.prescription == PrescriptionRule::least_distortion ||
-                        (options_.prescription == PrescriptionRule::manual && !all_given(task.cones)));
+  const bool is_free = repairs_ && task.cones.rotation_order == 0 && chooses_angles(options_, task.cones);
   const HalfedgeMesh& mesh = system_.mesh();
   const Geometry& geometry = system_.geometry();
   std::optional<FoundMap> best;
@@ -327,9 +331,7 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
 }
 
 bool Mapping::may_follow_strokes() const {
-  const bool chooses_angles = options_.prescription == PrescriptionRule::least_distortion ||
-                              (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
-  return repairs_ && options_.follow_strokes && (chooses_angles || may_turn_handles()) &&
+  return repairs_ && options_.follow_strokes && (chooses_angles(options_, task_.cones) || may_turn_handles()) &&
          task_.pinned_corners.size() < 2 && are_strokes(task_.directions, system_.geometry());
 }
 

@@ -95,9 +95,9 @@ std::optional<PlacedCones> turn_toward_strokes(const PlacementTask& task, const 
     const double before = missed(usual.cones), after = missed(out.cones);
     const TriedMap map = trial.make(out.cones, MapTrial::Repairs::all);
     if (!map.is_valid() || !is_worth_strokes({map.l2, after}, {usual.mapped_l2, before})) return std::nullopt;
-    ComponentSystem system(task, out.cones, Factorization::automatic);
+    out.system = trial.take_system(out.cones);
     std::vector<Finding> unsaid;
-    out.curvature = prescribe(system, out.cones, PrescriptionRule::manual, unsaid);
+    out.curvature = prescribe(*out.system.get(), out.cones, PrescriptionRule::manual, unsaid);
     out.mapped_l2 = map.l2;
     out.maps = usual.maps + trial.made();
     out.missing = usual.missing;
