@@ -19,6 +19,7 @@ from ..io.side_files import UsageError
 from ..io.standard_streams import complain, say
 from ..io.whole_files import remove_old_partials, write_whole
 from ..run import exit_codes
+from ..run.named_files import Reads
 from ..run.terminal import ProgressLine
 from .assets import (
     Asset,
@@ -65,6 +66,7 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
     batch.add_argument(
         "source",
         metavar="LIST|FOLDER",
+        action=Reads,
         type=Path,
         help="a text file with a path on each line, a folder, searched at any depth, or a single mesh",
     )
@@ -103,9 +105,12 @@ def add_scheduler_options(batch: argparse.ArgumentParser) -> None:
         metavar="ADDRESS",
         help="run on the Dask cluster with this scheduler, for instance tls://host:8786",
     )
-    group.add_argument("--tls-ca-file", metavar="FILE", help="certificates of the cluster's authorities, PEM")
-    group.add_argument("--tls-cert", metavar="FILE", help="certificate to show to the scheduler, PEM")
-    group.add_argument("--tls-key", metavar="FILE", help="key of the certificate, if it is in a separate file, PEM")
+    for option, text in (
+        ("--tls-ca-file", "certificates of the cluster's authorities, PEM"),
+        ("--tls-cert", "certificate to show to the scheduler, PEM"),
+        ("--tls-key", "key of the certificate, if it is in a separate file, PEM"),
+    ):
+        group.add_argument(option, metavar="FILE", action=Reads, help=text)
 
 
 def expand_options(argv: Sequence[str]) -> list[str]:

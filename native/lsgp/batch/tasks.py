@@ -14,12 +14,22 @@ from typing import Any
 from .. import InputError, __version__
 from ..io.side_files import UsageError
 from ..run.feature_options import FeatureKinds
+from ..run.named_files import names_of_read_files
 from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
-# Options that name a file beside each mesh; "{}" in them stands for the mesh's own path without its suffix.
-SIDE_FILES = ("cones", "seam_edges", "directions", "importance", "cut_costs", "features")
+# In the name of a file beside each mesh it stands for the mesh's own path without its suffix.
 MESH = "{}"
+
+
+def _unwrap_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(add_help=False)
+    add_unwrap_options(parser)
+    return parser
+
+
+# Options that name a file beside each mesh.
+SIDE_FILES = tuple(names_of_read_files(_unwrap_parser()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +60,7 @@ class Settings:
     @classmethod
     def of(cls, args: argparse.Namespace) -> Settings:
         """Raises UsageError where options contradict each other, or a file or a package that they take is missing."""
-        names = argparse.ArgumentParser(add_help=False)
-        add_unwrap_options(names)
-        options = {name: getattr(args, name) for name in vars(names.parse_args([]))}
+        options = {name: getattr(args, name) for name in vars(_unwrap_parser().parse_args([]))}
         try:
             library_options(args)
         except InputError as error:

@@ -29,6 +29,7 @@ from ..layouts.texels import texel_density
 from ..quads.quad_mesh import quad_quality
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
+from ..run.named_files import Reads, Writes
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.quads_file import add_quads_options, quads_file
@@ -63,8 +64,8 @@ class _Command(_Parser):
 
     def add_paths(self, output: str) -> None:
         """The mesh to read and the file to write."""
-        self.add_argument("input", metavar="IN", type=Path, help=INPUT)
-        self.add_argument("-o", "--output", metavar=output, type=Path, required=True, help=OUTPUT)
+        self.add_argument("input", metavar="IN", action=Reads, type=Path, help=INPUT)
+        self.add_argument("-o", "--output", metavar=output, action=Writes, type=Path, required=True, help=OUTPUT)
 
     def add_format(self) -> None:
         self.add_argument(
@@ -78,7 +79,9 @@ class _Command(_Parser):
     def add_reported(self, make: Callable[..., object], **defaults: Any) -> None:
         """What a run on one file, by `make`, is reported with."""
         self.add_format()
-        self.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+        self.add_argument(
+            "--report", metavar="FILE.json", action=Writes, type=Path, help="write a report, also when refused"
+        )
         self.set_defaults(run=_reported, make=make, **defaults)
 
 
@@ -128,11 +131,12 @@ def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
         description="Cut a mesh through its cones, unfold it, and write it with texture coordinates. OBJ, PLY and glTF "
         "files written in the same format keep all other content.",
     )
-    unwrap.add_argument("input", metavar="IN", type=Path, help=INPUT)
+    unwrap.add_argument("input", metavar="IN", action=Reads, type=Path, help=INPUT)
     unwrap.add_argument(
         "-o",
         "--output",
         metavar="OUT",
+        action=Writes,
         type=Path,
         help="OBJ, PLY, glTF or GLB, by its suffix, or - for standard output; the messages then go to standard error",
     )
@@ -189,7 +193,9 @@ def _add_measure(commands: argparse._SubParsersAction[_Command]) -> None:
         help="measure the texture coordinates of a file",
         description="Print the quality of the texture coordinates of an OBJ, glTF or GLB file.",
     )
-    measure.add_argument("input", metavar="FILE", type=Path, help="OBJ, glTF or GLB, or - for standard input")
+    measure.add_argument(
+        "input", metavar="FILE", action=Reads, type=Path, help="OBJ, glTF or GLB, or - for standard input"
+    )
     measure.add_argument(
         "--texture-size",
         metavar="T",

@@ -5,45 +5,45 @@ from __future__ import annotations
 
 import argparse
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from ..io.image_files import require_image_suffix
 from ..io.mesh_formats import BY_KEY, output_format
 from ..io.safe_files import is_same_file, is_standard_stream, require_separate, require_writable_kind
 from ..io.side_files import UsageError
-from ..run.pad_file import mip_paths
+from ..run.named_files import named_files, require_separate_files
+from ..run.pad_file import mip_files
 from ..run.quads_file import require_quads_output
 
 
 def require_usable_paths(args: argparse.Namespace) -> None:
-    """Raise UsageError or OSError where what a command writes cannot be written; with --in-place alone the output
-    becomes the input.
+    """Raise UsageError or OSError where what a command writes cannot be written, or would be written over a file that
+    another argument names; with --in-place alone the output becomes the input.
 
     args: input, output and report, format, and whether the result may be written over the input.
     """
+    files = named_files(args)
     if args.command == "unwrap":
         _choose_output(args)
-        output_format(None if is_standard_stream(args.output) else args.output, args.format)
         require_separate(args.input, args.output, in_place=args.in_place)
+        if args.in_place:
+            files.pop("output", None)  # which is the input
+            files["input"] = replace(files["input"], is_written=True)
+    every = [*files.values(), *(mip_files(args) if args.command == "pad" else ())]
+    require_separate_files(every)
+    if args.command == "unwrap":
+        output_format(None if is_standard_stream(args.output) else args.output, args.format)
     elif args.command == "quads":
         require_quads_output(args)
-        if is_same_file(args.input, args.output):
-            raise UsageError(f"the output '{args.output}' is the input itself; name another file")
     elif args.command == "pad":
         require_image_suffix(args.input, "the image")
         require_image_suffix(args.output, "the output")
-        for output in (args.output, *mip_paths(args.output, args.mips)):
-            if is_same_file(args.input, output):
-                raise UsageError(f"the output '{output}' is the image '{args.input}' itself; name another file")
     elif args.output is not None and args.output.suffix.lower()[1:] in BY_KEY:
         raise UsageError(f"the output is JSON; name it .json, not '{args.output}'")
-    if args.report is not None:
-        for other, what in ((args.output, "the output"), (args.input, "the input")):
-            if other is not None and is_same_file(other, args.report):
-                raise UsageError(f"{what} and the report cannot be the same file")
-    for path in (args.output, args.report):
-        if path is not None and not is_standard_stream(path):
-            _require_writable(path)
+    for file in every:
+        if file.is_written and not is_standard_stream(file.path):
+            _require_writable(file.path)
 
 
 def _choose_output(args: argparse.Namespace) -> None:

@@ -7,6 +7,7 @@ import errno
 import os
 import stat
 import sys
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -39,11 +40,35 @@ def is_same_file(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> 
     try:
         return os.path.samefile(one, other)
     except OSError:
-        return os.path.normcase(os.path.realpath(one)) == os.path.normcase(os.path.realpath(other))
+        return _place(one) == _place(other)
+
+
+def name_by_case(name: str, *, ignores_case: bool) -> str:
+    """The same for names of one file, of folders that ignore case or do not; the former compose accents as well."""
+    return unicodedata.normalize("NFC", name).casefold() if ignores_case else os.path.normcase(name)
+
+
+def ignores_case(folder: Path) -> bool:
+    """Whether names that differ in case alone are one file in a folder, judged by the names that lead to it."""
+    for place in (folder, *folder.parents):
+        swapped = place.name.swapcase()
+        if swapped != place.name and place.exists():
+            try:
+                return os.path.samefile(place, place.with_name(swapped))
+            except OSError:
+                return False
+    return False
+
+
+def _place(path: str | os.PathLike[str]) -> tuple[str, str]:
+    """Folder and name, the same for all paths to one file."""
+    whole = Path(os.path.realpath(path))
+    return os.path.normcase(whole.parent), name_by_case(whole.name, ignores_case=ignores_case(whole.parent))
 
 
 def require_separate(source: Path, target: Path, *, in_place: bool) -> None:
-    """Raise UsageError where the output would overwrite the input without a request, or while a backup of it exists."""
+    """Raise UsageError where the output would overwrite the input without a request, while a backup of it exists, or
+    where it is one of several hard links, the others of which would keep the old content."""
     if not is_same_file(source, target):
         return
     if not in_place:
@@ -54,6 +79,12 @@ def require_separate(source: Path, target: Path, *, in_place: bool) -> None:
     if backup.exists():
         raise UsageError(
             f"there is a backup '{backup}' of a run that was killed; compare it with the file, and remove it"
+        )
+    links = os.stat(target).st_nlink
+    if links > 1:
+        raise UsageError(
+            f"'{target}' is one of {links} hard links to a file; it is replaced as a whole, so the others would keep "
+            "the old content. Name another file, or replace the link by a copy first"
         )
 
 

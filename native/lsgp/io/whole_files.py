@@ -9,7 +9,7 @@ import os
 import secrets
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from .safe_files import backup_of, is_standard_stream, require_writable_kind
@@ -35,16 +35,49 @@ def write_whole(path: str | os.PathLike[str], data: bytes, *, keep_backup: bool 
 
     keep_backup: as for `whole_file`.  Raises OSError.
     """
-    target = Path(os.path.realpath(path))
-    require_writable_kind(target)
-    try:
+    with _named_in_errors(path):
+        target = _writable(path)
         if target.exists() and not target.is_file():
             target.write_bytes(data)
             return
-        with whole_file(target, keep_backup=keep_backup) as partial, partial.open("xb") as file:
-            file.write(data)
+        with whole_file(target, keep_backup=keep_backup) as partial:
+            _write_new(partial, data)
+
+
+def write_all_whole(contents: Sequence[tuple[Path, bytes]]) -> None:
+    """Write files as `write_whole` does, and none of them before all are on the disk beside their places.
+
+    Raises OSError.
+    """
+    with contextlib.ExitStack() as files:
+        for path, data in reversed(contents):
+            files.enter_context(_named_in_errors(path))
+            target = _writable(path)
+            if target.exists() and not target.is_file():
+                target.write_bytes(data)
+            else:
+                _write_new(files.enter_context(whole_file(target)), data)
+
+
+def _writable(path: str | os.PathLike[str]) -> Path:
+    """Where a path leads.  Raises OSError where nothing can be written."""
+    target = Path(os.path.realpath(path))
+    require_writable_kind(target)
+    return target
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    with path.open("xb") as file:
+        file.write(data)
+
+
+@contextlib.contextmanager
+def _named_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+    """The error of a full disk names no file."""
+    try:
+        yield
     except OSError as error:
-        if error.filename is None:  # the error of a full disk names no file
+        if error.filename is None:
             raise OSError(error.errno, error.strerror or str(error), os.fspath(path)) from error
         raise
 

@@ -18,6 +18,7 @@ from ..errors import InputError
 from ..io.mesh_files import MeshFile
 from ..io.side_files import UsageError, directions_in, load_json
 from ..stitching import at_stitched
+from .named_files import Reads
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,7 @@ def add_direction_options(command: argparse.ArgumentParser, up: str, what: str) 
     direction.add_argument(
         "--directions",
         metavar="FILE.json",
+        action=Reads,
         help=f"[[face, x, y, z], ...], faces counted from 0: the direction of {what} there; longer vectors have more "
         "weight; or, also among these, [vertex, vertex]: from one to the other along the edge",
     )

@@ -15,6 +15,7 @@ from ..features import feature_edges
 from ..io.side_files import UsageError, load_json, pairs_in
 from ..stitching import at_stitched
 from ..surface import Surface
+from .named_files import Reads
 
 _CREASE, _SHARP, _SEAMS, _BORDERS = "crease", "sharp", "seams", "borders"
 
@@ -41,6 +42,7 @@ def add_features_option(command: argparse.ArgumentParser, which: str) -> None:
     command.add_argument(
         "--features",
         metavar="FILE.json|KIND,...",
+        action=Reads,
         type=_features_option,
         help=f"{which}: [[a, b], ...], or by kind: crease:ANGLE, edges with that angle between the normals, in "
         "degrees, or more; seams, those of --seam-edges; borders; and, in Blender's batches, sharp, those marked so "

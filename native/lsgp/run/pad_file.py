@@ -12,7 +12,8 @@ import numpy as np
 from ..images.mip_levels import pad_mip_levels
 from ..io.image_files import format_image, read_image
 from ..io.side_files import UsageError
-from ..io.whole_files import write_whole
+from ..io.whole_files import write_all_whole
+from .named_files import NamedFile, Reads, Writes
 from .unwrap_file import Run, read_file, uv_of
 
 # Bilinear lookups and the box of the next level read less than this beyond an island, in pixels.
@@ -21,10 +22,17 @@ LEAST_MIP_MARGIN = 2.0
 
 def add_pad_options(pad: argparse.ArgumentParser) -> None:
     """The arguments of padding, which args of `pad_file` have."""
-    pad.add_argument("input", metavar="IMAGE", type=Path, help="PNG, 8 or 16 bits, or TIFF, these or floating point")
+    pad.add_argument(
+        "input",
+        metavar="IMAGE",
+        action=Reads,
+        type=Path,
+        help="PNG, 8 or 16 bits, or TIFF, these or floating point",
+    )
     pad.add_argument(
         "--uv",
         metavar="FILE",
+        action=Reads,
         type=Path,
         required=True,
         help="the mesh with its texture coordinates: OBJ, glTF or GLB, or - for standard input",
@@ -42,7 +50,9 @@ def add_pad_options(pad: argparse.ArgumentParser) -> None:
         default=0,
         help="also write the mip levels 1 to N, their gutters filled as well: OUT-mip1.png, OUT-mip2.png, ...",
     )
-    pad.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="PNG or TIFF, by its suffix")
+    pad.add_argument(
+        "-o", "--output", metavar="OUT", action=Writes, type=Path, required=True, help="PNG or TIFF, by its suffix"
+    )
 
 
 def pad_file(args: argparse.Namespace, run: Run) -> str:
@@ -63,12 +73,16 @@ def pad_file(args: argparse.Namespace, run: Run) -> str:
         levels = pad_mip_levels(image, file.surface(), corner_uv, margins, normal_map=args.normal_map)
     paths = [args.output, *mip_paths(args.output, args.mips)]
     contents = [format_image(level, path) for level, path in zip(levels, paths, strict=True)]
-    for path, content in zip(paths, contents, strict=True):
-        write_whole(path, content)
+    write_all_whole(list(zip(paths, contents, strict=True)))
     changed = levels[0] != image
     texels = int(np.count_nonzero(changed.any(axis=2) if changed.ndim == 3 else changed))
     written = f", and mip levels 1 to {args.mips}" if args.mips else ""
     return f"{args.output}: {width} x {height} texels, {texels} of them changed{written}"
+
+
+def mip_files(args: argparse.Namespace) -> list[NamedFile]:
+    """The files that --mips names."""
+    return [NamedFile("--mips", path, is_written=True) for path in mip_paths(args.output, args.mips)]
 
 
 def mip_paths(output: Path, count: int) -> list[Path]:

@@ -16,6 +16,7 @@ from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from ..options import Lattice, SeamMode
 from ..results import Placement
+from .named_files import Reads
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
 from .unwrap_options import (
@@ -41,7 +42,9 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
         help="the fewest cones with which each component's map has at most this L2 stretch, 1 being none "
         "(default: 1.05)",
     )
-    cones.add_argument("--keep", metavar="FILE.json", help="a cones file to complete; its cone_angles are kept")
+    cones.add_argument(
+        "--keep", metavar="FILE.json", action=Reads, help="a cones file to complete; its cone_angles are kept"
+    )
     cones.add_argument(
         "--seamless", action="store_true", help="choose positions and angles together for a seamless layout"
     )
@@ -61,7 +64,9 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
     cones.add_argument(
         "--prefer-sharp", action="store_true", help="prefer sharp corners to smooth regions if that costs little"
     )
-    cones.add_argument("--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, as for lsgp unwrap")
+    cones.add_argument(
+        "--seam-edges", metavar="FILE.json", action=Reads, help="[[a, b], ...]: marked edges, as for lsgp unwrap"
+    )
     cones.add_argument(
         "--seams", choices=get_args(SeamMode), default="follow", help="meaning of marked edges, as for lsgp unwrap"
     )

@@ -24,6 +24,7 @@ from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh, remesh_to_quads
 from .direction_options import add_direction_options, load_directions, require_finite_up, strokes_of
 from .feature_options import add_features_option, features_of
+from .named_files import Reads
 from .unwrap_file import Run, read_file
 from .unwrap_options import (
     add_cones_option,
@@ -52,6 +53,7 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
     quads.add_argument(
         "--density",
         metavar="FILE",
+        action=Reads,
         help="the number of quads per area at each vertex, relative to the others: a JSON list of one number for each "
         "vertex, [[vertex, number], ...] with 1 elsewhere, or numbers as text; 4 makes quads half as long. --size is "
         "the side where it is 1",

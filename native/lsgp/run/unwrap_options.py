@@ -40,6 +40,7 @@ from ..stitching import at_stitched
 from ..surface import Surface
 from .direction_options import add_direction_options, require_finite_up
 from .feature_options import add_features_option
+from .named_files import Reads
 
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
@@ -108,7 +109,10 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "cuts by least squares conformal maps without transitions (default: lsgp)",
     )
     unwrap.add_argument(
-        "--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, with the meaning given by --seams"
+        "--seam-edges",
+        metavar="FILE.json",
+        action=Reads,
+        help="[[a, b], ...]: marked edges, with the meaning given by --seams",
     )
     unwrap.add_argument(
         "--seams",
@@ -184,6 +188,7 @@ def add_cones_option(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--cones",
         metavar="FILE.json|auto|auto:N",
+        action=_ReadsCones,
         type=_cones_option,
         default=AUTO,
         help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, '
@@ -226,6 +231,7 @@ def add_cut_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--cut-costs",
         metavar="FILE",
+        action=Reads,
         help='lines "a b cost": cost per length, 0 to 1e6, of a cut along the edge between two vertices, counted from '
         "0, in place of that by --cuts, which is 0.01 to 1.1; or one number for each vertex, from 0, which attracts "
         "cuts, to 1, which repels them; or the same as [[a, b, cost], ...] or [number, ...]",
@@ -339,6 +345,7 @@ def _add_low_stretch_options(unwrap: argparse.ArgumentParser) -> None:
     low_stretch.add_argument(
         "--importance",
         metavar="FILE",
+        action=Reads,
         help="weight of stretch at each vertex, numbers from 0 up, as text or [number, ...] (default: equal weights)",
     )
 
@@ -481,9 +488,17 @@ def _cones_option(text: str) -> str:
     return text
 
 
+class _ReadsCones(Reads):
+    """Some values ask for automatic cones instead of naming a file."""
+
+    @staticmethod
+    def path_in(value: str) -> Path | None:
+        return None if value == AUTO or value.startswith(AUTO_COUNT) else Path(value)
+
+
 def cones_file(args: argparse.Namespace) -> Path | None:
     """The cones file; None where cones are placed automatically."""
-    return None if args.cones == AUTO or args.cones.startswith(AUTO_COUNT) else Path(args.cones)
+    return _ReadsCones.path_in(args.cones)
 
 
 def cone_count(args: argparse.Namespace) -> int | None:

@@ -119,7 +119,7 @@ def test_an_open_mesh_is_refused_with_its_border(lsgp, tmp_path: Path) -> None:
     ("arguments", "told"),
     [
         (["-o", "quads.ply"], "name the output .obj"),
-        (["-o", "ball.obj"], "is the input itself"),
+        (["-o", "ball.obj"], "IN 'ball.obj' are the same file"),
         (["-o", "quads.obj", "--stretch", "0.5"], "add --mode low-stretch"),
         (["-o", "quads.obj", "--up", "nan", "0", "0"], "finite"),
         (["-o", "quads.obj", "--target", "9", "--size", "1"], "not allowed with"),

@@ -40,8 +40,22 @@ def test_the_input_by_any_path_is_refused_as_output(
     said = capsys.readouterr().err
     assert f"'{path}'" in said and "'cube.obj'" in said and "--in-place" in said
     assert Path("cube.obj").read_bytes() == before
-    assert main([*RUN, "-o", path, "--in-place"]) == 0
-    assert Path(path).read_bytes() != before
+    assert main([*RUN, "-o", path, "--in-place"]) == (2 if kind == "hard link" else 0)
+    assert (Path(path).read_bytes() == before) == (kind == "hard link")
+
+
+def test_hard_links_are_not_parted(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What replaces a file as a whole would leave the others as they were."""
+    monkeypatch.chdir(cube_files)
+    before = Path("cube.obj").read_bytes()
+    os.link("cube.obj", "twin.obj")
+    assert main([*RUN, "--in-place"]) == 2
+    assert "'cube.obj' is one of 2 hard links" in capsys.readouterr().err
+    assert Path("cube.obj").read_bytes() == Path("twin.obj").read_bytes() == before
+    Path("twin.obj").unlink()
+    assert main([*RUN, "--in-place"]) == 0
 
 
 def test_the_report_is_not_written_over_a_link_to_the_input(

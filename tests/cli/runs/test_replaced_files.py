@@ -6,6 +6,8 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -96,6 +98,45 @@ def test_the_new_file_is_on_the_disk_before_the_old_one_goes(
     write_whole(target, b"after this", keep_backup=True)
     assert put[0] == len(b"after this")
     assert {path.name: path.read_bytes() for path in target.parent.iterdir()} == {"out.obj": b"after this"}
+
+
+@pytest.mark.parametrize("fails", ["a", "b", "c"])
+def test_of_several_files_none_is_replaced_before_all_are_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    before = {name: f"{name} before".encode() for name in "abc"}
+    for name, data in before.items():
+        (tmp_path / name).write_bytes(data)
+    contents = [(tmp_path / name, f"{name} after".encode()) for name in "abc"]
+    write_new = whole_files._write_new
+
+    def fail(path: Path, data: bytes) -> None:
+        write_new(path, data[:3] if data.startswith(fails.encode()) else data)
+        if data.startswith(fails.encode()):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(whole_files, "_write_new", fail)
+    with pytest.raises(OSError, match="No space left") as caught:
+        whole_files.write_all_whole(contents)
+    assert caught.value.filename == os.fspath(tmp_path / fails)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    monkeypatch.undo()
+    whole_files.write_all_whole(contents)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {path.name: data for path, data in contents}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits on the size of files are a POSIX matter")
+@pytest.mark.parametrize("options", [["-o", "out.obj"], ["--in-place"]])
+def test_a_disk_that_is_full_leaves_what_was_there(cube_files: Path, options: list[str]) -> None:
+    """The system refuses more bytes in the middle of the file."""
+    (cube_files / "out.obj").write_bytes(b"before")
+    before = {path.name: path.read_bytes() for path in cube_files.iterdir()}
+    limited = "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048)); from lsgp.cli import main"
+    command = [sys.executable, "-c", f"{limited}; sys.exit(main())", "unwrap", "cube.obj", *options]
+    done = subprocess.run(command, cwd=cube_files, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, "File too large" in done.stderr) == (2, True)
+    assert "Traceback" not in done.stderr
+    assert {path.name: path.read_bytes() for path in cube_files.iterdir()} == before
 
 
 @windows

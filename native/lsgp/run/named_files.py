@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The files that the arguments of a command name.
+
+Every argument that names a file is declared by the action `Reads` or `Writes`, so that `require_separate_files` knows
+all of them: what is written is never a file that another argument names.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+from ..io.safe_files import is_same_file
+from ..io.side_files import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class NamedFile:
+    """A file, and the argument that names it as users know that: an option, or the placeholder of a positional one."""
+
+    argument: str
+    path: Path
+    is_written: bool
+
+
+class Reads(argparse.Action):
+    """Stores the value of an argument that names a file to read, or keeps its own meaning for some values."""
+
+    is_written = False
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option: str | None = None
+    ) -> None:
+        setattr(namespace, self.dest, values)
+        files = named_files(namespace)
+        files.pop(self.dest, None)  # the last value of an option counts
+        path = self.path_in(values)
+        if path is not None:
+            name = self.option_strings[-1] if self.option_strings else str(self.metavar)
+            files[self.dest] = NamedFile(name, path, self.is_written)
+        namespace.named_files = files
+
+    @staticmethod
+    def path_in(value: Any) -> Path | None:
+        """The file that a value names, None where it names none."""
+        return Path(value) if isinstance(value, str | os.PathLike) else None
+
+
+class Writes(Reads):
+    """Stores the value of an argument that names a file to write."""
+
+    is_written = True
+
+
+def named_files(args: argparse.Namespace) -> dict[str, NamedFile]:
+    """Those of the arguments that were given, by the names of their values."""
+    return dict(vars(args).get("named_files", {}))
+
+
+def names_of_read_files(parser: argparse.ArgumentParser) -> list[str]:
+    """The arguments of a parser that name files to read, by the names of their values."""
+    return [action.dest for action in parser._actions if isinstance(action, Reads) and not action.is_written]
+
+
+def require_separate_files(files: Iterable[NamedFile]) -> None:
+    """Raise UsageError where two arguments name one file, by whatever paths, and one of them writes it; a device, as
+    the null device, may have several writers."""
+    for one, other in combinations(files, 2):
+        is_device = one.path.exists() and not one.path.is_file()
+        if (one.is_written or other.is_written) and not is_device and is_same_file(one.path, other.path):
+            written, named = (one, other) if one.is_written else (other, one)
+            raise UsageError(
+                f"{written.argument} '{written.path}' and {named.argument} '{named.path}' are the same file; name "
+                "another"
+            )
