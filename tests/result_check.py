@@ -56,6 +56,14 @@ def undeclared_faults(
     unlisted = ~np.isin(edge_keys(*_open_edges(opened)), edge_keys(*result.cut_edges.T))
     if unlisted.any():
         faults.append(f"{int(unlisted.sum())} sides of edges are apart that cut_edges does not list")
+    if options.seams == "follow":
+        inner = np.flatnonzero(opened.twin >= 0)
+        seams = np.intersect1d(
+            edge_keys(*surface.seams.T), edge_keys(opened.vertex[inner], opened.vertex[next_corner(inner)])
+        )
+        uncut = int((~np.isin(seams, edge_keys(*result.cut_edges.T))).sum())
+        if uncut:
+            faults.append(f"{uncut} of {len(seams)} marked seams are not cut")
     if options.method == "lsgp":
         faults += _wrong_angles(result, opened, flipped) + _open_seams(surface, result, opened)
     if surface.directions is not None:

@@ -188,7 +188,10 @@ def _cuts(
     shift = (real + 1j * imag) / grid.cell
     translation = grid.nearest(shift)
     off = np.abs(shift - grid.place(translation)).max(axis=1)
-    before, after = opened.straight_on(h, result.cones, _flat_sheets(opened, z))
+    tail, head = result.seamless.cut_nodes.T
+    # A seam may close on itself without a node; the certificate says where it begins.
+    nodes = np.union1d(result.cones, tail[tail == head])
+    before, after = opened.straight_on(h, nodes, _flat_sheets(opened, z))
     path = labels(before, after, len(h))
     first, last = np.ones(len(h), bool), np.ones(len(h), bool)
     first[after] = last[before] = False

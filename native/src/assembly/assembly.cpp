@@ -76,8 +76,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
                    std::optional<FoundMap>& split) {
   const Component& component = components_[component_index];
   ComponentMap& map = mapped.map;
-  const PerHalfedge<char> open = open_seams(component.mesh);
-  const OpenedSurface opened{{component.mesh, geometry}, open};
+  const OpenedSurface opened{{component.mesh, geometry}, component.mesh.seam};
   const SplitTask splitting{component.mesh.seam, task.cones.mirroring};
   // A seamless layout was split before its islands were put onto the lattice; pinned ones keep their position.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2 && !split) {
@@ -239,16 +238,11 @@ void Assembly::measure_directions(const Solved& solved) {
   }
 }
 
-PerHalfedge<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
-  // A seamless layout continues across seams that were not cut.
-  return result_.seamless ? PerHalfedge<char>(mesh.halfedge_count(), 0) : mesh.seam;
-}
-
 void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   const Component& component = *solved.component;
   const ComponentMap& map = solved.map;
   const HalfedgeMesh& mesh = component.mesh;
-  PerHalfedge<char> open = open_seams(mesh);
+  PerHalfedge<char> open = mesh.seam;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
   solved.island_count = label_parts(mesh, open, solved.island);
   append_ends(component, open, cut_edges_);

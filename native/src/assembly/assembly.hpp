@@ -60,9 +60,6 @@ class Assembly {
   void collect_checks(const Component& component, const ComponentMap& map);
   void measure_directions(const Solved& solved);
 
-  // Halfedges at which a component's layout may end besides its cuts.
-  PerHalfedge<char> open_seams(const HalfedgeMesh& mesh) const;
-
   // A component is one island, or several if its cuts and seams enclose regions: these keep their size and are placed
   // individually, related across the seam by their motions. Seams that end in the interior are cut as well, and their
   // two sides coincide.

@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "creases/features.hpp"
+#include "division/cut_apart.hpp"
 #include "plane/layout.hpp"
 #include "seamless/exact_layout.hpp"
 #include "seamless/grid_search.hpp"
@@ -65,14 +66,29 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   return out;
 }
 
+// The layout on the grid as a map in cells. Marked seams that no cone needed are cuts of it, too, whose transition is
+// the identity until the pieces they enclose are placed.
+ComponentMap map_on_grid(const SeamlessComponent& component, Complex shift, const Eigen::VectorXcd& position) {
+  const HalfedgeMesh& mesh = component.source->mesh;
+  ComponentMap map = *component.map;
+  map.position = position.array() + shift;
+  PerHalfedge<char> is_cut = map.cut_graph.is_cut;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] != none) is_cut[h] = is_cut[h] || mesh.seam[h];
+  }
+  if (is_cut != map.cut_graph.is_cut) {
+    cut_apart(mesh, std::move(is_cut), PerTriangle<Index>(mesh.triangle_count(), 0), PerPart<Motion>(1), map);
+  }
+  return map;
+}
+
 // The layouts as maps in cells, split where they overlap. If a component cannot be split, all maps are left unchanged.
 void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessComponent>& components,
                    ProgressMonitor& monitor) {
   Array<ComponentMap> maps(components.size());
   for_each_seamless(components, [&](std::size_t i) {
     const HalfedgeMesh& mesh = components[i].source->mesh;
-    maps[i] = *components[i].map;
-    maps[i].position = grid.layouts[i].position.array() + shift;
+    maps[i] = map_on_grid(components[i], shift, grid.layouts[i].position);
     // Cones off the lattice have translations off it, across which no part may move.
     const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
     const SplitTask task{search.relaxed(i).empty() ? mesh.seam : everywhere, components[i].system->mirroring()};
@@ -172,7 +188,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     split_layouts(search, shift, grid, components, monitor);
   } else {
     for (std::size_t i = 0; i < components.size(); ++i)
-      components[i].map->position = grid.layouts[i].position.array() + shift;
+      *components[i].map = map_on_grid(components[i], shift, grid.layouts[i].position);
   }
   Array<DividedLayout> layouts;
   for (const SeamlessComponent& component : components)
