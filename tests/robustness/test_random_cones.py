@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random cone sets on all shared meshes: no crash, no NaN, and no defect of a map that no warning names.
 
-Continuous integration runs a selection.  LSGP_FULL_SWEEP=1 runs all 20 seeds on all meshes, which takes long; as a
+A selection runs at every change.  LSGP_FULL_SWEEP=1 runs all 20 seeds on all meshes, which takes long; as a
 script this module does so and prints, a line for each mesh, how many sets end in a valid map, in one whose defects are
 named, in a refusal and in a map with angles near those given, and the seeds that do not end in a valid one. Meshes are
 shared ones or members of the zoo:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random seams that part a surface into disks and planar pieces: just they are cut, and the layout is valid.
 
-Continuous integration runs a selection; LSGP_FULL_SWEEP=1 runs all seeds on all generated and shared meshes.
+A selection runs at every change; LSGP_FULL_SWEEP=1 runs all seeds on all generated and shared meshes.
 """
 
 from __future__ import annotations

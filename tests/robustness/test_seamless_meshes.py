@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seamless layouts of real meshes on grids of all sizes: exact where there is a layout, and a named refusal where not.
 
-Continuous integration runs a selection.  LSGP_FULL_SWEEP=1 runs every grid on every mesh; as a script this module does
+A selection runs at every change.  LSGP_FULL_SWEEP=1 runs every grid on every mesh; as a script this module does
 so and prints a table:
 
     python tests/robustness/test_seamless_meshes.py
