@@ -14,6 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from ..io.json_text import JsonError, parse_json
 from ..io.side_files import UsageError
 from ..run.report import finite
 from .assets import Shard
@@ -147,6 +148,6 @@ def _read_journal(path: Path, ended: Ended) -> None:
 def _parsed(line: bytes) -> Any:
     """None for a damaged line, as after a power failure."""
     try:
-        return json.loads(line)
-    except (ValueError, RecursionError):
+        return parse_json(line)
+    except JsonError:
         return None

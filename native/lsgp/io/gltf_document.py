@@ -3,6 +3,9 @@
 
 Written on the standard library alone: available readers drop what they do not know of a document, and here all of it
 has to be preserved.
+
+Documents come from anywhere. Every value is checked where it is read, and as parts of a document may share their data,
+so that a short one stands for any amount, what is written is bounded by `Document.require_room`.
 """
 
 from __future__ import annotations
@@ -10,72 +13,152 @@ from __future__ import annotations
 import base64
 import json
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import unquote
+from urllib.parse import unquote, unquote_to_bytes
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from .json_text import JsonError, parse_json
 from .mesh_text import malformed, quoted
 
 MAGIC, VERSION = b"glTF", 2
 JSON_CHUNK, BINARY_CHUNK = 0x4E4F534A, 0x004E4942
-COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+BYTE, UNSIGNED_BYTE, SHORT, UNSIGNED_SHORT, UNSIGNED_INT, FLOAT = 5120, 5121, 5122, 5123, 5125, 5126
+COMPONENTS = {
+    **{BYTE: "<i1", UNSIGNED_BYTE: "<u1", SHORT: "<i2", UNSIGNED_SHORT: "<u2"},
+    **{UNSIGNED_INT: "<u4", FLOAT: "<f4"},
+}
+# Of the elements of attributes, the integers as by KHR_mesh_quantization; and of indices.
+IN_ATTRIBUTES = (FLOAT, BYTE, UNSIGNED_BYTE, SHORT, UNSIGNED_SHORT)
+IN_INDICES = (UNSIGNED_BYTE, UNSIGNED_SHORT, UNSIGNED_INT)
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 VERTICES, INDICES = 34962, 34963
 ALIGNMENT = 4
 # Compressed forms of data, for which there is no decoder here.
 COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+# The lists of a document that are read here.
+LISTS = ("accessors", "bufferViews", "buffers", "images", "meshes", "nodes")
+
+# Bytes that may be written of data that parts of a document share, and as a multiple of the document. Where every
+# triangle of a closed mesh becomes an island, vertices with all they have become six each.
+SHARED_BYTES, SHARED_TIMES = 1 << 28, 8
 
 ReadUri = Callable[[str], bytes]
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
+class View:
+    """source[begin:end], the bytes of a buffer view; others of the same buffer, by its number, may overlap them."""
+
+    source: memoryview
+    begin: int
+    end: int
+    buffer: int
+
+    @property
+    def data(self) -> memoryview:
+        return self.source[self.begin : self.end]
+
+
 class Document:
-    """content: the JSON. views: the bytes of each of its buffer views."""
+    """content: the JSON, with objects in all of LISTS. views: its buffer views. size: of the file and all that was read
+    for it, in bytes."""
 
-    content: dict[str, Any]
-    views: list[bytes]
+    def __init__(self, content: dict[str, Any], buffers: list[bytes], size: int) -> None:
+        """Raises InputError: MALFORMED_FILE."""
+        self.content = content
+        self.size = size
+        self._buffers = len(buffers)
+        self._written = 0
+        sources = [memoryview(buffer) for buffer in buffers]
+        self.views = [_view(view, sources) for view in content.get("bufferViews", [])]
+        self._largest = max((view.end - view.begin for view in self.views), default=0)
 
-    def rows(self, accessor: int) -> NDArray[np.uint8]:
-        """The elements of an accessor as bytes, (count, bytes of an element)."""
-        a = self.content["accessors"][accessor]
+    def accessor(self, number: Any) -> dict[str, Any]:
+        """Raises InputError."""
+        accessors = self.content.get("accessors", [])
+        return accessors[index_of(number, accessors, "accessor")]
+
+    def count(self, accessor: Any) -> int:
+        """How many elements an accessor has, at least one.  Raises InputError."""
+        return whole_number(self.accessor(accessor), "count", least=1)
+
+    def rows(self, accessor: Any) -> NDArray[np.uint8]:
+        """The elements of an accessor as bytes, (count, bytes of an element).  Raises InputError."""
+        a = self.accessor(accessor)
         if "sparse" in a:
             raise malformed("sparse accessors are not read.")
-        dtype, width = np.dtype(COMPONENTS[a["componentType"]]), WIDTHS[a["type"]]
-        size, count = dtype.itemsize * width, int(a["count"])
+        width = WIDTHS[one_of(a, "type", WIDTHS)]
+        size, count = component_of(a).itemsize * width, self.count(accessor)
         if "bufferView" not in a:
-            if count > max(map(len, self.views), default=0):
+            if count > self._largest:
                 raise malformed(f"an accessor of {count} elements without data.")
             return np.zeros((count, size), np.uint8)
-        view = self.views[a["bufferView"]]
-        begin = int(a.get("byteOffset", 0))
-        stride = int(self.content["bufferViews"][a["bufferView"]].get("byteStride", size))
-        if count < 1 or begin < 0 or stride < size or begin + stride * (count - 1) + size > len(view):
+        number = index_of(a["bufferView"], self.views, "buffer view")
+        view, begin = self.views[number].data, whole_number(a, "byteOffset", 0)
+        stride = whole_number(self.content["bufferViews"][number], "byteStride", size)
+        if stride < size or begin + stride * (count - 1) + size > len(view):
             raise malformed(f"accessor {accessor} reaches beyond its data.")
         return np.lib.stride_tricks.as_strided(
             np.frombuffer(view, np.uint8)[begin:], (count, size), (stride, 1), writeable=False
         )
 
-    def numbers(self, accessor: int) -> NDArray[np.float64]:
-        """The elements of an accessor as numbers, (count, width)."""
-        a = self.content["accessors"][accessor]
-        dtype = np.dtype(COMPONENTS[a["componentType"]])
-        values = np.ascontiguousarray(self.rows(accessor)).view(dtype).astype(np.float64)
-        return np.maximum(values / np.iinfo(dtype).max, -1.0) if a.get("normalized") else values
+    def numbers(self, accessor: Any, kind: str, at: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Some elements of an accessor of an attribute as numbers, (k, width).  at: (k,), less than its count.
+
+        Raises InputError.
+        """
+        a = self.accessor(accessor)
+        values = self._values(accessor, kind, IN_ATTRIBUTES, at)
+        with np.errstate(invalid="ignore"):  # a NaN of any kind
+            numbers = values.astype(np.float64)
+        if values.dtype.kind == "f" or not a.get("normalized"):
+            return numbers
+        return np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
+
+    def indices(self, accessor: Any) -> NDArray[np.int64]:
+        """The elements of an accessor of indices.  Raises InputError."""
+        if self.accessor(accessor).get("normalized"):
+            raise malformed("indices that are normalized.")
+        return self._values(accessor, "SCALAR", IN_INDICES)[:, 0].astype(np.int64)
+
+    def _values(
+        self, accessor: Any, kind: str, components: Collection[int], at: NDArray[np.int64] | None = None
+    ) -> NDArray:
+        a = self.accessor(accessor)
+        if one_of(a, "type", WIDTHS) != kind or one_of(a, "componentType", COMPONENTS) not in components:
+            numbers = ", ".join(map(str, components))
+            raise malformed(f"accessor {accessor} is used as a {kind} of components {numbers}, which it is not.")
+        rows = self.rows(accessor)
+        return np.ascontiguousarray(rows if at is None else rows[at]).view(component_of(a))
+
+    def require_room(self, count: int) -> None:
+        """For so many bytes more to be written of the data of the document, in memory and in the file.
+
+        Raises InputError: MALFORMED_FILE where all of them are out of proportion.
+        """
+        self._written += count
+        if self._written > max(SHARED_BYTES, SHARED_TIMES * self.size):
+            raise malformed(
+                f"parts of the glTF share data so often that {self.size} bytes would become more than "
+                f"{self._written}. Give parts their own data."
+            )
 
     def add_view(self, rows: NDArray, target: int) -> int:
-        """Append elements as a buffer view; those of vertices begin at multiples of four bytes."""
+        """Append elements as a buffer view; those of vertices begin at multiples of four bytes.  Raises InputError."""
         view: dict[str, Any] = {"buffer": 0, "target": target}
         data = np.ascontiguousarray(rows).view(np.uint8).reshape(len(rows), -1)
+        self.require_room(data.nbytes)
         padding = -data.shape[1] % ALIGNMENT
         if target == VERTICES and padding:
             data = np.pad(data, ((0, 0), (0, padding)))
             view["byteStride"] = data.shape[1]
-        self.views.append(data.tobytes())
+        self.views.append(View(memoryview(data.tobytes()), 0, data.size, self._buffers))
+        self._buffers += 1
         self.content.setdefault("bufferViews", []).append(view)
         return len(self.views) - 1
 
@@ -84,30 +167,62 @@ class Document:
         return len(self.content["accessors"]) - 1
 
     def to_bytes(self, *, binary: bool) -> bytes:
-        """A GLB file, or with its data in the JSON a glTF file.  Buffer views that nothing refers to are dropped."""
+        """A GLB file, or with its data in the JSON a glTF file.  Buffer views that nothing refers to are dropped.
+
+        Raises InputError.
+        """
         self._drop_unused_views()
-        buffer = bytearray()
-        for view, data in zip(self.content.get("bufferViews", []), self.views, strict=True):
-            view.update(buffer=0, byteOffset=len(buffer), byteLength=len(data))
-            buffer += data + bytes(-len(data) % ALIGNMENT)
+        buffer = self._joined_views()
         self.content.pop("buffers", None)
         if buffer:
             self.content["buffers"] = [{"byteLength": len(buffer)}]
             if not binary:
                 text = base64.b64encode(buffer).decode("ascii")
                 self.content["buffers"][0]["uri"] = f"data:application/octet-stream;base64,{text}"
-        content = json.dumps(self.content, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "surrogatepass")
+        text = json.dumps(self.content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+        content = text.encode("utf-8", "surrogatepass")
         if not binary:
             return content + b"\n"
         chunks = _chunk(JSON_CHUNK, content, b" ") + (_chunk(BINARY_CHUNK, bytes(buffer), b"\0") if buffer else b"")
         return MAGIC + struct.pack("<II", VERSION, 12 + len(chunks)) + chunks
 
+    def _joined_views(self) -> bytearray:
+        """The data of all views, whose places are put into the JSON; bytes that views share are there once."""
+        buffer = bytearray()
+        for group in self._overlapping():
+            views = [self.views[number] for number in group]
+            begin, end = views[0].begin, max(view.end for view in views)
+            if len(group) > 1:  # what begins at a multiple of four bytes does so again
+                buffer += bytes(begin % ALIGNMENT)
+            for number, view in zip(group, views, strict=True):
+                without_compressed(self.content["bufferViews"][number])
+                place = {"byteOffset": len(buffer) + view.begin - begin, "byteLength": view.end - view.begin}
+                self.content["bufferViews"][number].update(buffer=0, **place)
+            buffer += views[0].source[begin:end]
+            buffer += bytes(-len(buffer) % ALIGNMENT)
+        return buffer
+
+    def _overlapping(self) -> list[list[int]]:
+        """The views in groups, by their first bytes; those of different groups have none in common. Groups are in the
+        order of their first views."""
+        groups: list[list[int]] = []
+        end, buffer = 0, -1
+        for number in sorted(range(len(self.views)), key=lambda n: (self.views[n].buffer, self.views[n].begin)):
+            view = self.views[number]
+            if view.buffer != buffer or view.begin >= end:
+                groups.append([])
+                end, buffer = view.end, view.buffer
+            groups[-1].append(number)
+            end = max(end, view.end)
+        return sorted(groups, key=min)
+
     def _drop_unused_views(self) -> None:
         """By convention all that refers to a buffer view, extensions included, calls it "bufferView"."""
         views = self.content.get("bufferViews", [])
-        used = sorted({holder["bufferView"] for holder in _holders(self.content, "bufferView")})
+        holders = list(_holders(self.content, "bufferView"))
+        used = sorted({index_of(holder["bufferView"], views, "buffer view") for holder in holders})
         place = {old: new for new, old in enumerate(used)}
-        for holder in _holders(self.content, "bufferView"):
+        for holder in holders:
             holder["bufferView"] = place[holder["bufferView"]]
         self.views = [self.views[old] for old in used]
         if used:
@@ -117,23 +232,30 @@ class Document:
 
 
 def load_document(data: bytes, read_uri: ReadUri) -> Document:
-    """A document from a glTF or GLB file.  read_uri: the content of a file that it names.
+    """A document from a glTF or GLB file.  read_uri: the content of a file that it names, the same object each time.
 
     Raises OSError, InputError: MALFORMED_FILE.
     """
     text, binary = _chunks(data) if data[:4] == MAGIC else (data, b"")
     try:
-        content = json.loads(text.decode("utf-8"))
-        version = str(content["asset"]["version"])
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        content = parse_json(text, finite=True)
+    except JsonError as error:
         raise malformed(f"no glTF: {error}.") from error
+    asset = content.get("asset") if isinstance(content, dict) else None
+    version = asset.get("version") if isinstance(asset, dict) else None
+    if not isinstance(version, str):
+        raise malformed("no glTF: the version is missing.")
     if not version.startswith("2."):
-        raise malformed(f"glTF {quoted(version.encode())} is not read, only 2.0.")
-    compressed = [name for name in COMPRESSED if name in content.get("extensionsRequired", [])]
+        raise malformed(f"glTF {quoted_text(version)} is not read, only 2.0.")
+    required = content.get("extensionsRequired", [])
+    compressed = [name for name in COMPRESSED if isinstance(required, list) and name in required]
     if compressed:
         raise malformed(f"compressed data ({compressed[0]}) is not read; export without compression.")
-    buffers = [_buffer(entry, binary, read_uri) for entry in content.get("buffers", [])]
-    return Document(content, [_view(view, buffers) for view in content.get("bufferViews", [])])
+    for name in LISTS:
+        objects_of(content, name)
+    outside: dict[int, bytes] = {}
+    buffers = [_buffer(entry, binary, read_uri, outside) for entry in content.get("buffers", [])]
+    return Document(content, buffers, len(data) + sum(map(len, outside.values())))
 
 
 def uri_data(uri: str, read_uri: ReadUri) -> bytes:
@@ -141,19 +263,87 @@ def uri_data(uri: str, read_uri: ReadUri) -> bytes:
     if not uri.startswith("data:"):
         return read_uri(unquote(uri))
     head, _, text = uri.partition(",")
-    return base64.b64decode(text, validate=False) if head.endswith(";base64") else unquote(text).encode("latin-1")
+    return base64.b64decode(text, validate=False) if head.endswith(";base64") else unquote_to_bytes(text)
 
 
-def _view(view: dict[str, Any], buffers: list[bytes]) -> bytes:
-    begin, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
-    found = buffers[view["buffer"]][begin : begin + length]
-    if begin < 0 or len(found) != length:
+def quoted_text(text: str) -> str:
+    """For a message."""
+    return quoted(text[:40].encode("utf-8", "surrogatepass"))
+
+
+def objects_of(holder: dict[str, Any], name: str) -> list[dict[str, Any]]:
+    """A list of objects in an object, empty where there is none.  Raises InputError."""
+    value = holder.get(name, [])
+    if not (isinstance(value, list) and all(isinstance(item, dict) for item in value)):
+        raise malformed(f"{quoted_text(name)} in the glTF is not a list of objects.")
+    return value
+
+
+def index_of(value: Any, among: Collection[Any], what: str) -> int:
+    """A number that names one of these, from 0.  what: they are.  Raises InputError."""
+    if type(value) is not int or not 0 <= value < len(among):
+        raise malformed(f"the glTF names a {what} that is not among its {len(among)}.")
+    return value
+
+
+def whole_number(holder: dict[str, Any], name: str, default: int | None = None, *, least: int = 0) -> int:
+    """An integer in an object.  default: where it is not there; None requires it.  Raises InputError."""
+    value = holder.get(name, default)
+    if type(value) is not int or value < least:
+        raise malformed(f"{quoted_text(name)} in the glTF is not a whole number of {least} or more.")
+    return value
+
+
+def some_numbers(holder: dict[str, Any], name: str, default: tuple[float, ...]) -> NDArray[np.float64]:
+    """As many numbers as there are defaults, where they are not there.  Raises InputError."""
+    value = holder.get(name, default)
+    if len(value) != len(default) if isinstance(value, list) else value is not default:
+        raise malformed(f"{quoted_text(name)} in the glTF is not a list of {len(default)} numbers.")
+    if not all(type(number) in (int, float) for number in value):
+        raise malformed(f"{quoted_text(name)} in the glTF is not a list of numbers.")
+    return np.array(value, np.float64)
+
+
+def one_of(holder: dict[str, Any], name: str, table: Collection[Any]) -> Any:
+    """A value in an object that is one of these keys.  Raises InputError."""
+    value = holder.get(name)
+    if type(value) not in (int, str) or value not in table:
+        raise malformed(f"{quoted_text(name)} in the glTF is none of {', '.join(map(str, table))}.")
+    return value
+
+
+def component_of(accessor: dict[str, Any]) -> np.dtype:
+    """The type of the numbers of an accessor.  Raises InputError."""
+    return np.dtype(COMPONENTS[one_of(accessor, "componentType", COMPONENTS)])
+
+
+def without_compressed(holder: dict[str, Any]) -> None:
+    """Take out what an object says of the same data in a compressed form."""
+    extensions = holder.get("extensions")
+    if isinstance(extensions, dict) and not extensions.keys().isdisjoint(COMPRESSED):
+        holder["extensions"] = {name: value for name, value in extensions.items() if name not in COMPRESSED}
+
+
+def _view(view: dict[str, Any], sources: list[memoryview]) -> View:
+    buffer = index_of(view.get("buffer"), sources, "buffer")
+    begin = whole_number(view, "byteOffset", 0)
+    end = begin + whole_number(view, "byteLength")
+    if end > len(sources[buffer]):
         raise malformed("a buffer view reaches beyond its buffer.")
-    return found
+    return View(sources[buffer], begin, end, buffer)
 
 
-def _buffer(entry: dict[str, Any], binary: bytes, read_uri: ReadUri) -> bytes:
-    return uri_data(entry["uri"], read_uri) if "uri" in entry else binary
+def _buffer(entry: dict[str, Any], binary: bytes, read_uri: ReadUri, outside: dict[int, bytes]) -> bytes:
+    """outside: gets those of other files."""
+    uri = entry.get("uri")
+    if uri is None:
+        return binary
+    if not isinstance(uri, str):
+        raise malformed("the name of a buffer is no text.")
+    data = uri_data(uri, read_uri)
+    if not uri.startswith("data:"):
+        outside[id(data)] = data
+    return data
 
 
 def _chunks(data: bytes) -> tuple[bytes, bytes]:
@@ -163,7 +353,8 @@ def _chunks(data: bytes) -> tuple[bytes, bytes]:
         length, kind = struct.unpack_from("<II", data, at)
         if at + 8 + length > len(data):
             raise malformed("the file ends within a chunk.")
-        found.setdefault(kind, data[at + 8 : at + 8 + length])
+        if kind in (JSON_CHUNK, BINARY_CHUNK) and kind not in found:
+            found[kind] = data[at + 8 : at + 8 + length]
         at += 8 + length
     if JSON_CHUNK not in found:
         raise InputError("MALFORMED_FILE", "A GLB file without content. Export the file again.")
@@ -176,13 +367,13 @@ def _chunk(kind: int, data: bytes, padding: bytes) -> bytes:
 
 
 def _holders(value: Any, key: str) -> Iterator[dict[str, Any]]:
-    """All objects of the JSON that have the key."""
-    waiting = [value]
+    """All objects of the JSON that have an integer by the key, each once."""
+    waiting, seen = [value], set()
     while waiting:
         item = waiting.pop()
-        if isinstance(item, dict):
-            if isinstance(item.get(key), int):
-                yield item
-            waiting.extend(item.values())
-        elif isinstance(item, list):
-            waiting.extend(item)
+        if not isinstance(item, dict | list) or id(item) in seen:
+            continue
+        seen.add(id(item))
+        if isinstance(item, dict) and type(item.get(key)) is int:
+            yield item
+        waiting.extend(item.values() if isinstance(item, dict) else item)

@@ -39,6 +39,8 @@ MESH_SUFFIXES = frozenset(form.suffix for form in FORMATS) | {
 }
 GLTF_FORMS = (GLTF, GLB)
 NAMED_EXTRAS = 8
+# Of a file beside a document: no system has longer paths.
+LONGEST_NAME = 1 << 15
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -206,22 +208,29 @@ def _not_kept(file: MeshFile, form: Format) -> tuple[Finding, ...]:
 
 
 def _beside(path: Path | None) -> Callable[[str], bytes]:
-    """Reads files that a document names.
+    """Reads files that a document names, each once.
 
-    What is read ends up in the output, and documents come from anywhere, so they get nothing from outside their folder.
+    What is read ends up in the output, and documents come from anywhere, so they get nothing from outside their folder,
+    by links neither.
     """
+    found: dict[Path, bytes] = {}
 
     def read(uri: str) -> bytes:
-        named = quoted(uri.encode("utf-8", "surrogatepass"))
+        named = quoted(uri[:LONGEST_NAME].encode("utf-8", "surrogatepass"))
         if path is None:
             raise InputError(
                 "MALFORMED_FILE", f"The document needs {named}, which is not beside standard input. Give its path."
             )
+        if "\0" in uri or len(uri) > LONGEST_NAME:
+            raise ValueError(f"{named} cannot be the name of a file")
         place = Path(os.path.normpath(uri))
-        if place.anchor or ".." in place.parts:
+        real = Path(os.path.realpath(path.parent / place))
+        if place.anchor or ".." in place.parts or not real.is_relative_to(os.path.realpath(path.parent)):
             raise InputError(
                 "MALFORMED_FILE", f"The document needs {named}, which is outside its folder. Copy that file beside it."
             )
-        return read_regular(path.parent / place)
+        if real not in found:
+            found[real] = read_regular(real)
+        return found[real]
 
     return read

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import base64
 import contextlib
-import copy
+import json
 import mimetypes
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -18,15 +19,33 @@ from numpy.typing import NDArray
 from ..base.counted import counted
 from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
-from .gltf_document import COMPONENTS, INDICES, VERTICES, Document, ReadUri, load_document, uri_data
-from .mesh_text import malformed, quoted
+from .gltf_document import (
+    FLOAT,
+    INDICES,
+    UNSIGNED_INT,
+    UNSIGNED_SHORT,
+    VERTICES,
+    Document,
+    ReadUri,
+    component_of,
+    index_of,
+    load_document,
+    objects_of,
+    quoted_text,
+    some_numbers,
+    uri_data,
+    whole_number,
+    without_compressed,
+)
+from .mesh_text import malformed
 from .polygons import PolygonMesh
 from .welding import weld
 
 TRIANGLES, STRIPS = 4, (5, 6)
-UV, TANGENTS = "TEXCOORD_0", "TANGENT"
-FLOAT, SHORT, LONG = 5126, 5123, 5125
-BROKEN = (KeyError, IndexError, TypeError, ValueError, AttributeError)
+POSITION, UV, TANGENTS = "POSITION", "TEXCOORD_0", "TANGENT"
+BROKEN = (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError, RecursionError)
+# Triangles of all primitives, where these share so much data that there are more corners than bytes.
+SHARED_TRIANGLES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -81,7 +100,7 @@ def edit_gltf(
             Finding(
                 "CONTENT_NOT_KEPT",
                 "Images outside the document's folder are not read and were not taken along, first "
-                f"{quoted(outside[0].encode('utf-8', 'surrogatepass'))}. Copy them beside it.",
+                f"{quoted_text(outside[0])}. Copy them beside it.",
             )
         )
     if tangents:
@@ -117,22 +136,34 @@ def new_gltf(
     vt, index = index_corners(triangles.ravel(), _flipped(solved.reshape(-1, 2)))
     vertex = np.empty(len(vt), np.int64)
     vertex[index] = triangles.ravel()
-    document = Document({"asset": {"version": "2.0", "generator": "lsgp"}}, [])
-    places = positions[vertex].astype(np.float32)
-    limits = {"min": places.min(axis=0).tolist(), "max": places.max(axis=0).tolist()}
+    document = Document({"asset": {"version": "2.0", "generator": "lsgp"}}, [], positions.nbytes + corner_uv.nbytes)
+    places = _in_single_precision(positions[vertex])
     attributes = {
-        "POSITION": _new_accessor(document, places, "VEC3", FLOAT, VERTICES) | limits,
-        UV: _new_accessor(document, vt.astype(np.float32), "VEC2", FLOAT, VERTICES),
+        POSITION: _new_accessor(document, places, "VEC3", FLOAT, VERTICES) | _limits(places),
+        UV: _new_accessor(document, _in_single_precision(vt), "VEC2", FLOAT, VERTICES),
     }
     primitive = {name: document.add_accessor(accessor) for name, accessor in attributes.items()}
-    indices = document.add_accessor(_new_accessor(document, index.astype(np.uint32)[:, None], "SCALAR", LONG, INDICES))
+    indices = _new_accessor(document, index.astype(np.uint32)[:, None], "SCALAR", UNSIGNED_INT, INDICES)
     document.content |= {
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": primitive, "indices": indices}]}],
+        "meshes": [{"primitives": [{"attributes": primitive, "indices": document.add_accessor(indices)}]}],
     }
     return document.to_bytes(binary=binary), (unsolved_at_origin(missing, "glTF"),) if missing else ()
+
+
+def _in_single_precision(numbers: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Raises InputError: WRONG_PARAMETER where they are beyond its range."""
+    with np.errstate(over="ignore"):
+        single = numbers.astype(np.float32)
+    if not np.isfinite(single).all():
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"glTF holds numbers up to {np.finfo(np.float32).max:.2g}, and the mesh has {np.abs(numbers).max():.2g}. "
+            "Write OBJ, or scale the mesh.",
+        )
+    return single
 
 
 def unsolved_at_origin(count: int, form: str) -> Finding:
@@ -148,12 +179,8 @@ def _joined(document: Document, with_uv: bool) -> PolygonMesh:
     transforms = _transforms(document)
     primitives = list(_primitives(document))
     positions, corners, first = [np.empty((0, 3))], [np.empty(0, np.int64)], 0
-    for mesh in sorted({primitive.mesh for primitive in primitives}):
-        own = [primitive for primitive in primitives if primitive.mesh == mesh]
-        points = [_points(document, primitive) for primitive in own]
-        offsets = np.cumsum([0, *map(len, points)])
-        used = np.concatenate([primitive.vertices + offset for primitive, offset in zip(own, offsets, strict=False)])
-        places, index = weld(np.concatenate(points)[used])
+    for mesh, own in groupby(primitives, lambda primitive: primitive.mesh):
+        places, index = weld(np.concatenate([_points(document, primitive) for primitive in own]))
         positions.append(_placed(places, transforms.get(mesh, np.eye(4))))
         corners.append(index + first)
         first += len(places)
@@ -170,24 +197,37 @@ def _joined(document: Document, with_uv: bool) -> PolygonMesh:
 
 def _primitives(document: Document) -> Iterator[_Primitive]:
     """Those of triangles, in the order of the document; points and lines are passed over."""
+    corners = 0
     for number, mesh in enumerate(document.content.get("meshes", [])):
-        for content in mesh["primitives"]:
-            mode = content.get("mode", TRIANGLES)
+        for content in objects_of(mesh, "primitives"):
+            mode = whole_number(content, "mode", TRIANGLES)
             if mode in STRIPS:
                 raise malformed("triangle strips and fans are not read; export triangles.")
-            if mode != TRIANGLES or "POSITION" not in content["attributes"]:
+            if mode != TRIANGLES or POSITION not in _attributes(content):
                 continue
-            count = len(document.rows(content["attributes"]["POSITION"]))
-            vertices = np.arange(count)
-            if "indices" in content:
-                vertices = document.numbers(content["indices"])[:, 0].astype(np.int64)
+            indices, position = content.get("indices"), content["attributes"][POSITION]
+            count = document.count(position)
+            corners += count if indices is None else document.count(indices)
+            if corners > max(3 * SHARED_TRIANGLES, document.size):
+                raise malformed(f"a glTF of {document.size} bytes with {corners // 3} triangles or more.")
+            document.rows(position)  # which has as many
+            vertices = np.arange(count) if indices is None else document.indices(indices)
             if len(vertices) % 3 or (vertices >= count).any():
                 raise malformed("triangles that are cut short or name vertices that are not there.")
             yield _Primitive(number, content, vertices)
 
 
+def _attributes(primitive: dict[str, Any]) -> dict[str, Any]:
+    """The accessors of a primitive by the names of attributes.  Raises InputError."""
+    found = primitive.get("attributes")
+    if not isinstance(found, dict):
+        raise malformed("a primitive of the glTF has no attributes.")
+    return found
+
+
 def _points(document: Document, primitive: _Primitive) -> NDArray[np.float64]:
-    return document.numbers(primitive.content["attributes"]["POSITION"])
+    """(3 t, 3) places of the corners."""
+    return document.numbers(primitive.content["attributes"][POSITION], "VEC3", primitive.vertices)
 
 
 def _old_uv(document: Document, primitive: _Primitive) -> NDArray[np.float64]:
@@ -195,7 +235,7 @@ def _old_uv(document: Document, primitive: _Primitive) -> NDArray[np.float64]:
     accessor = primitive.content["attributes"].get(UV)
     if accessor is None:
         return np.full((len(primitive.vertices), 2), np.nan)
-    return _flipped(document.numbers(accessor)[primitive.vertices])
+    return _flipped(document.numbers(accessor, "VEC2", primitive.vertices))
 
 
 def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -204,35 +244,45 @@ def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _placed(points: NDArray[np.float64], transform: NDArray[np.float64]) -> NDArray[np.float64]:
-    placed = points @ transform[:3, :3].T + transform[:3, 3]
-    if np.linalg.det(transform[:3, :3]) < 0:
-        placed[:, 0] *= -1  # the triangles are to turn as they do in the mesh
+    with np.errstate(over="ignore", invalid="ignore"):
+        placed = points @ transform[:3, :3].T + transform[:3, 3]
+        if np.linalg.det(transform[:3, :3]) < 0:
+            placed[:, 0] *= -1  # the triangles are to turn as they do in the mesh
     return placed
 
 
 def _transforms(document: Document) -> dict[int, NDArray[np.float64]]:
     """Of each mesh, by its number, the transform of the first node that has it, to the scene."""
-    nodes = document.content.get("nodes", [])
-    children = {child for node in nodes for child in node.get("children", [])}
+    nodes, meshes = document.content.get("nodes", []), document.content.get("meshes", [])
+    children = [_children(node, nodes) for node in nodes]
+    below = {child for of_one in children for child in of_one}
     found: dict[int, NDArray[np.float64]] = {}
     seen = set()
-    waiting = [(number, np.eye(4)) for number in range(len(nodes)) if number not in children][::-1]
+    waiting = [(number, np.eye(4)) for number in range(len(nodes)) if number not in below][::-1]
     while waiting:
         number, above = waiting.pop()
         if number in seen:
             continue
         seen.add(number)
-        transform = above @ _matrix(nodes[number])
+        with np.errstate(over="ignore", invalid="ignore"):  # places that are not finite are refused by the library
+            transform = above @ _matrix(nodes[number])
         if "mesh" in nodes[number]:
-            found.setdefault(nodes[number]["mesh"], transform)
-        waiting += [(child, transform) for child in nodes[number].get("children", [])[::-1]]
+            found.setdefault(index_of(nodes[number]["mesh"], meshes, "mesh"), transform)
+        waiting += [(child, transform) for child in reversed(children[number])]
     return found
+
+
+def _children(node: dict[str, Any], nodes: list[dict[str, Any]]) -> list[int]:
+    found = node.get("children", [])
+    if not isinstance(found, list):
+        raise malformed("the children of a node of the glTF are no list.")
+    return [index_of(child, nodes, "node") for child in found]
 
 
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     if "matrix" in node:
-        return np.array(node["matrix"], np.float64).reshape(4, 4).T
-    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
+        return some_numbers(node, "matrix", (0.0,) * 16).reshape(4, 4).T
+    x, y, z, w = some_numbers(node, "rotation", (0.0, 0.0, 0.0, 1.0))
     rotation = np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -241,47 +291,59 @@ def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
         ]
     )
     matrix = np.eye(4)
-    matrix[:3, :3] = rotation * np.array(node.get("scale", (1.0, 1.0, 1.0)), np.float64)
-    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    matrix[:3, :3] = rotation * some_numbers(node, "scale", (1.0, 1.0, 1.0))
+    matrix[:3, 3] = some_numbers(node, "translation", (0.0, 0.0, 0.0))
     return matrix
 
 
 def _extras(document: Document, primitives: list[_Primitive]) -> tuple[str, ...]:
     """Content of the document other than triangles and their texture coordinates."""
-    names = {name for primitive in primitives for name in primitive.content["attributes"]} - {"POSITION", UV}
+    names = {name for primitive in primitives for name in primitive.content["attributes"]} - {POSITION, UV}
     names |= {key for key in ("materials", "skins", "animations", "cameras") if document.content.get(key)}
     if len(document.content.get("nodes", [])) > 1:
         names.add("nodes")
     if any("targets" in primitive.content for primitive in primitives):
         names.add("morph targets")
-    return tuple(sorted(names))
+    return tuple(quoted_text(name)[1:-1] for name in sorted(names))
 
 
 def _accessor_uses(document: Document) -> Counter[int]:
     """How often primitives refer to each accessor."""
     uses: Counter[int] = Counter()
     for mesh in document.content.get("meshes", []):
-        for primitive in mesh["primitives"]:
-            for accessors in (primitive["attributes"], *primitive.get("targets", [])):
-                uses.update(accessors.values())
-            uses.update([primitive["indices"]] if "indices" in primitive else [])
+        for primitive in objects_of(mesh, "primitives"):
+            named = [accessor for accessors in _holders_of(primitive) for accessor in accessors.values()]
+            uses.update(accessor for accessor in [*named, primitive.get("indices")] if type(accessor) is int)
     return uses
+
+
+def _holders_of(primitive: dict[str, Any]) -> list[dict[str, Any]]:
+    """The objects in which accessors stand by the names of attributes: its own and those of its morph targets."""
+    return [_attributes(primitive), *objects_of(primitive, "targets")]
 
 
 def _take_in_images(document: Document, read_uri: ReadUri) -> list[str]:
     """Returns the names of those outside the document's folder, which stay where they are."""
     outside = []
+    texts: dict[int, tuple[bytes, str]] = {}  # by the identity of what was read, which stays as long as it is in here
     for image in document.content.get("images", []):
         uri = image.get("uri", "data:")
+        if not isinstance(uri, str):
+            raise malformed("the name of an image is no text.")
         if uri.startswith("data:"):
             continue
         try:
-            text = base64.b64encode(uri_data(uri, read_uri)).decode("ascii")
+            data = uri_data(uri, read_uri)
         except OSError:  # one that is missing here is no more missing elsewhere
             continue
         except InputError:
             outside.append(uri)
             continue
+        if id(data) not in texts:
+            texts[id(data)] = data, base64.b64encode(data).decode("ascii")
+            document.size += len(data)
+        _, text = texts[id(data)]
+        document.require_room(len(text))
         kind = image.get("mimeType") or mimetypes.guess_type(uri)[0] or "application/octet-stream"
         image["uri"] = f"data:{kind};base64,{text}"
     return outside
@@ -305,28 +367,42 @@ def _split(document: Document, primitive: _Primitive, uv: NDArray[np.float64], u
     vertex = np.empty(len(vt), np.int64)
     vertex[index] = primitive.vertices
     content = primitive.content
-    for accessors in (content["attributes"], *content.get("targets", [])):
+    without_compressed(content)  # it is of the old vertices
+    taken: dict[int, int] = {}
+    for accessors in _holders_of(content):
         for name in [name for name in accessors if name != UV or accessors is not content["attributes"]]:
-            accessors[name] = _taken(document, accessors[name], vertex, uses)
-    new_uv = _new_accessor(document, vt.astype(np.float32), "VEC2", FLOAT, VERTICES)
+            old = accessors[name]
+            document.accessor(old)
+            if old not in taken:
+                taken[old] = _taken(document, old, vertex, uses)
+            accessors[name] = taken[old]
+    new_uv = _new_accessor(document, _in_single_precision(vt), "VEC2", FLOAT, VERTICES)
     content["attributes"][UV] = _put(document, content["attributes"].get(UV), new_uv, uses)
     is_short = len(vt) < np.iinfo(np.uint16).max
     numbers = index.astype(np.uint16 if is_short else np.uint32)[:, None]
-    indices = _new_accessor(document, numbers, "SCALAR", SHORT if is_short else LONG, INDICES)
+    indices = _new_accessor(document, numbers, "SCALAR", UNSIGNED_SHORT if is_short else UNSIGNED_INT, INDICES)
     content["indices"] = _put(document, content.get("indices"), indices, uses)
 
 
 def _taken(document: Document, accessor: int, vertex: NDArray[np.int64], uses: Counter[int]) -> int:
     """An accessor of the elements of these vertices, with all else that the old one says."""
-    old = document.content["accessors"][accessor]
-    new = copy.deepcopy(old)
-    new |= {"bufferView": document.add_view(document.rows(accessor)[vertex], VERTICES), "count": len(vertex)}
-    new.pop("byteOffset", None)
+    old, rows = document.accessor(accessor), document.rows(accessor)
+    if len(rows) <= vertex.max(initial=-1):
+        raise malformed("an attribute has fewer elements than its primitive has vertices.")
+    if uses[accessor] > 1:  # it stays for others, and all that it says is written again
+        document.require_room(len(json.dumps(old)))
+    new = old | {"bufferView": document.add_view(rows[vertex], VERTICES), "count": len(vertex)}
+    for name in ("byteOffset", "min", "max"):
+        new.pop(name, None)
     if "min" in old:
-        dtype = np.dtype(COMPONENTS[old["componentType"]])
-        values = np.ascontiguousarray(document.rows(accessor)[vertex]).view(dtype)
-        new |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+        new |= _limits(np.ascontiguousarray(rows[vertex]).view(component_of(old)))
     return _put(document, accessor, new, uses)
+
+
+def _limits(values: NDArray) -> dict[str, list[float]]:
+    """The least and largest of each component, as far as JSON has the numbers."""
+    limits = {"min": values.min(axis=0), "max": values.max(axis=0)}
+    return {name: limit.tolist() for name, limit in limits.items() if np.isfinite(limit).all()}
 
 
 def _put(document: Document, old: int | None, accessor: dict[str, Any], uses: Counter[int]) -> int:

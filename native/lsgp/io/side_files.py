@@ -5,7 +5,6 @@ cut costs."""
 from __future__ import annotations
 
 import errno
-import json
 import math
 import os
 import stat
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from .json_text import JsonError, parse_json
 from .mesh_text import Rows, malformed
 
 
@@ -221,8 +221,8 @@ def _floats(values: list[float]) -> NDArray[np.float64]:
 
 def _parsed(data: bytes, path: Path) -> Any:
     try:
-        return json.loads(data)
-    except (ValueError, RecursionError) as error:
+        return parse_json(data)
+    except JsonError as error:
         raise UsageError(f"'{path}' is not valid JSON: {error}") from error
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from gltf_files import Builder, content_of, corners_of, values_of
 from lsgp.errors import InputError
+from lsgp.io import gltf_document, mesh_gltf
 from lsgp.io.mesh_files import read_mesh_file, write_mesh_file
 from polygon_meshes import bumpy_ball, obj_text
 
@@ -225,6 +226,43 @@ def test_nothing_outside_the_folder_of_a_document_gets_into_a_result(tmp_path: P
     assert about_images.code == "CONTENT_NOT_KEPT"
 
 
+@pytest.mark.parametrize("of_folder", [False, True])
+def test_links_do_not_lead_out_of_the_folder_of_a_document(tmp_path: Path, of_folder: bool) -> None:
+    b = scene()
+    (tmp_path / "outside").mkdir()
+    (tmp_path / "outside" / "secret").write_bytes(b.buffer)
+    (tmp_path / "in").mkdir()
+    link = tmp_path / "in" / ("link" if of_folder else "secret")
+    try:
+        link.symlink_to(tmp_path / "outside" if of_folder else tmp_path / "outside" / "secret")
+    except OSError:
+        pytest.skip("no links here")
+    uri = "link/secret" if of_folder else "secret"
+    buffers = [{"byteLength": len(b.buffer), "uri": uri}]
+    path = in_file(tmp_path / "in", json.dumps(b.content | {"buffers": buffers}).encode(), "a.gltf")
+    with pytest.raises(InputError, match="outside its folder"):
+        read_mesh_file(path)
+    b.content["images"] = [{"uri": uri}]
+    file = read_mesh_file(in_file(tmp_path / "in", b.gltf(), "b.gltf"))
+    findings = write_mesh_file(tmp_path / "far.gltf", file, some_uv(len(file.triangulation.triangles)))
+    assert json.loads((tmp_path / "far.gltf").read_text())["images"] == [{"uri": uri}]
+    assert any("outside the document's folder" in finding.message for finding in findings)
+
+
+def test_links_within_the_folder_of_a_document_and_to_it_are_followed(tmp_path: Path) -> None:
+    b = scene()
+    (tmp_path / "in" / "maps").mkdir(parents=True)
+    (tmp_path / "in" / "maps" / "data.bin").write_bytes(b.buffer)
+    try:
+        (tmp_path / "in" / "link.bin").symlink_to("maps/data.bin")
+        (tmp_path / "other").symlink_to(tmp_path / "in")
+    except OSError:
+        pytest.skip("no links here")
+    b.content["buffers"] = [{"byteLength": len(b.buffer), "uri": "link.bin"}]
+    in_file(tmp_path / "in", json.dumps(b.content).encode(), "a.gltf")
+    assert len(read_mesh_file(tmp_path / "other" / "a.gltf").mesh.positions) > 4
+
+
 def test_files_in_folders_below_that_of_a_document_are_found(tmp_path: Path) -> None:
     b = scene()
     (tmp_path / "in" / "maps").mkdir(parents=True)
@@ -257,6 +295,11 @@ def broken(change) -> bytes:
     return b.gltf()
 
 
+def with_number(text: bytes) -> bytes:
+    """A document in which the number of an accessor's elements is this text."""
+    return scene().gltf().replace(b'"count": 162', b'"count": ' + text, 1)
+
+
 MALFORMED = {
     "no JSON": b"{",
     "no object": b"[]",
@@ -274,6 +317,46 @@ MALFORMED = {
     "attributes that are missing": broken(lambda c: c["meshes"][0]["primitives"][0].pop("attributes")),
     "nodes of text": broken(lambda c: c.update(nodes="x")),
     "matrix too short": broken(lambda c: c["nodes"][2].update(matrix=[1])),
+    "signed indices": broken(lambda c: c["accessors"][-4].update(componentType=5122)),
+    "indices by floats": broken(lambda c: c["accessors"][-4].update(componentType=5126, count=3)),
+    "indices in pairs": broken(lambda c: c["accessors"][-4].update(type="VEC2", count=3)),
+    "normalized indices": broken(lambda c: c["accessors"][-4].update(normalized=True)),
+    "places in pairs": broken(lambda c: c["accessors"][0].update(type="VEC2")),
+    **{
+        f"a count of {text[:10]!r}": with_number(text)
+        for text in (
+            *(
+                b"Infinity",
+                b"-Infinity",
+                b"NaN",
+                b"1e400",
+                b"1" * 400,
+                b"1" * 5000,
+                b"162.0",
+                b'"162"',
+                b"true",
+                b"null",
+            ),
+            *(b"-162", b"0", b"[162]", b"1e2"),
+        )
+    },
+    "a stride that is infinite": broken(lambda c: c["bufferViews"][0].update(byteStride=float("inf"))),
+    "a stride below the element": broken(lambda c: c["bufferViews"][0].update(byteStride=4)),
+    "a stride of nothing": broken(lambda c: c["bufferViews"][0].update(byteStride=0)),
+    "a negative stride": broken(lambda c: c["bufferViews"][0].update(byteStride=-12)),
+    "a stride that overflows": broken(lambda c: c["bufferViews"][0].update(byteStride=2**62)),
+    "a view before its buffer": broken(lambda c: c["bufferViews"][0].update(byteOffset=-4)),
+    "a view of a buffer before the first": broken(lambda c: c["bufferViews"][0].update(buffer=-1)),
+    "a buffer by truth": broken(lambda c: c["bufferViews"][0].update(buffer=False)),
+    "depth": broken(lambda c: c.update(extras=json.loads("[" * 900 + "]" * 900))),
+    "depth without an end": b"[" * 100_000,
+    "a name twice": b'{"asset": {"version": "2.0"}, "asset": {"version": "2.0"}}',
+    "a version of numbers": broken(lambda c: c.update(asset={"version": 2.0})),
+    "a child that is not there": broken(lambda c: c["nodes"][0].update(children=[-1])),
+    "a mesh that is not there": broken(lambda c: c["nodes"][1].update(mesh=-1)),
+    "a matrix of text": broken(lambda c: c["nodes"][2].update(matrix=["1"] * 16)),
+    "a rotation of lists": broken(lambda c: c["nodes"][0].update(rotation=[[0]] * 4)),
+    "a scale of truths": broken(lambda c: c["nodes"][0].update(scale=[True] * 3)),
     "accessor without data": broken(
         lambda c: (c["accessors"][0].pop("bufferView"), c["accessors"][0].update(count=9**9))
     ),
@@ -292,6 +375,7 @@ def test_malformed_documents_are_refused(tmp_path: Path, name: str) -> None:
     finally:
         tracemalloc.stop()
     assert caught.value.code == "MALFORMED_FILE"
+    assert len(caught.value.message) < 300
     assert peak < 1e6
 
 
@@ -303,6 +387,10 @@ MALFORMED_BESIDE_THE_MESH = {
     "morph targets": lambda c: c["meshes"][0]["primitives"][0].update(targets=5),
     "attribute": lambda c: c["meshes"][0]["primitives"][0]["attributes"].update(COLOR_0=999),
     "view": lambda c: c.update(extras={"bufferView": 999}),
+    "view before the first": lambda c: c.update(extras={"bufferView": -1}),
+    "attribute of fewer elements": lambda c: c["accessors"][2].update(count=3),
+    "attribute by truth": lambda c: c["meshes"][0]["primitives"][0]["attributes"].update(COLOR_0=True),
+    "attribute of a list": lambda c: c["meshes"][0]["primitives"][0]["attributes"].update(COLOR_0=[2]),
 }
 
 
@@ -319,6 +407,93 @@ def test_documents_that_are_malformed_beside_the_mesh_are_refused(tmp_path: Path
 def test_nodes_that_are_their_own_children_end(tmp_path: Path) -> None:
     data = broken(lambda c: c["nodes"][1].update(children=[0]))
     assert len(read_mesh_file(in_file(tmp_path, data, "a.gltf")).mesh.positions) > 4
+
+
+def overlapping(count: int) -> Builder:
+    """A document with so many accessors, nearly all of the buffer each."""
+    b = Builder()
+    position = b.add(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4"))
+    b.add(np.arange(100_000, dtype="<u4"))
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position}}]}]
+    for i in range(count):
+        b.content["bufferViews"].append({"buffer": 0, "byteOffset": 36 + 4 * i, "byteLength": 390_000})
+        b.content["accessors"].append({"bufferView": 2 + i, "count": 97_500, "type": "SCALAR", "componentType": 5125})
+    return b
+
+
+def test_what_views_have_in_common_is_there_once(tmp_path: Path) -> None:
+    """In memory and in the file; a short document could stand for any amount of data."""
+    count = 200
+    b = overlapping(count)
+    path = in_file(tmp_path, b.glb(), "a.glb")
+    tracemalloc.start()
+    try:
+        file = read_mesh_file(path)
+        write_mesh_file(tmp_path / "out.glb", file, some_uv(1))
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    after = (tmp_path / "out.glb").read_bytes()
+    assert len(after) < 1.1 * len(b.glb()) and peak < 10 * len(after)
+    for accessor in (1, 2, count // 2, count + 1):
+        assert (values_of(after, accessor) == values_of(b.glb(), accessor)).all()
+
+
+def test_parts_that_share_their_data_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mesh_gltf, "SHARED_TRIANGLES", 10_000)
+    corners, _, _ = soup(10)
+    b = Builder()
+    position = b.add(corners.reshape(-1, 3))
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position}}] * 2}] * 4
+    assert len(read_mesh_file(in_file(tmp_path, b.glb(), "a.glb")).triangulation.triangles) == 8 * len(corners)
+    b.content["meshes"] *= 10
+    with pytest.raises(InputError, match="triangles or more") as caught:
+        read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    assert caught.value.code == "MALFORMED_FILE"
+
+    monkeypatch.setattr(gltf_document, "SHARED_BYTES", 1 << 22)
+    attributes = {f"_{i}": position for i in range(1000)}  # one accessor by many names is copied once
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position} | attributes}]}]
+    file = read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    uv = np.zeros((len(corners), 3, 2))
+    write_mesh_file(tmp_path / "out.glb", file, uv)
+    assert (tmp_path / "out.glb").stat().st_size < 3 * len(b.glb())
+    for name in attributes:
+        b.content["accessors"].append(b.content["accessors"][position] | {"name": name})
+        attributes[name] = len(b.content["accessors"]) - 1
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position} | attributes}]}]
+    file = read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    with pytest.raises(InputError, match="share data") as caught:
+        write_mesh_file(tmp_path / "out.glb", file, uv)
+    assert caught.value.code == "MALFORMED_FILE"
+
+
+def test_one_image_by_many_names_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gltf_document, "SHARED_BYTES", 1 << 20)
+    b = scene()
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "stone.png").write_bytes(bytes(1 << 18))
+    b.content["images"] = [{"uri": "./" * i + "stone.png"} for i in range(20)]
+    file = read_mesh_file(in_file(tmp_path / "in", b.gltf(), "a.gltf"))
+    with pytest.raises(InputError, match="share data"):
+        write_mesh_file(tmp_path / "far.gltf", file, some_uv(len(file.triangulation.triangles)))
+    assert not (tmp_path / "far.gltf").exists()
+
+
+def test_a_compressed_form_of_data_that_changes_is_taken_out(tmp_path: Path) -> None:
+    b = scene()
+    draco = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    b.content["meshes"][0]["primitives"][0]["extensions"] = draco | {"other": {}}
+    file = read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    write_mesh_file(tmp_path / "out.glb", file, some_uv(len(file.triangulation.triangles)))
+    (after, _) = content_of((tmp_path / "out.glb").read_bytes())
+    assert after["meshes"][0]["primitives"][0]["extensions"] == {"other": {}}
+
+
+def test_numbers_beyond_single_precision_are_no_gltf(tmp_path: Path, lsgp) -> None:
+    (tmp_path / "in.obj").write_text("v 0 0 0\nv 1e39 0 0\nv 0 1e39 0\nf 1 2 3\n")
+    done = lsgp("unwrap", "in.obj", "-o", "out.gltf")
+    assert done.code == 3 and not (tmp_path / "out.gltf").exists()
 
 
 def test_trimesh_reads_what_is_written(tmp_path: Path) -> None:
