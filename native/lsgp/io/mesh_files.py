@@ -101,14 +101,14 @@ def read_mesh(path: str | os.PathLike[str], with_uv: bool = False) -> PolygonMes
 
 
 def read_mesh_file(path: str | os.PathLike[str], with_uv: bool = False, *, stitch: bool = True) -> MeshFile:
-    """Read a mesh file: OBJ, OFF, PLY, glTF, GLB; with the extra `formats` STL too.
+    """Read a mesh file: OBJ, OFF, PLY, glTF, GLB, STL.
 
     Vertices are those of the file, in its order; of STL and glTF, which repeat them, each place once. Polygons are cut
     into triangles.
     with_uv: read texture coordinates as well, of OBJ and glTF.
     stitch: boundaries that coincide are stitched, as by `stitch_borders`; `MeshFile.stitched` has the vertices
         that the surface has instead of others, cones for instance.
-    Raises OSError; InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED, MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
+    Raises OSError; InputError: UNKNOWN_FORMAT, MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
     """
     data = read_regular(Path(path))
     form, mesh = parse_mesh(Path(path), data, with_uv=with_uv)

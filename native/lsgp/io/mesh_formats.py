@@ -9,21 +9,20 @@ from pathlib import Path
 
 from ..errors import InputError
 from .mesh_off import HEADER as OFF_HEADER
-from .optional_packages import installation, is_installed, not_installed
+from .optional_packages import installation, is_installed
 from .side_files import UsageError
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format of mesh files.
+    """A format of mesh files, all of which can be read.
 
     name: as people write it. suffix: of its files, with the dot, lower case.
-    reader, writer: the package this requires, "" for none; None where there is no reader or writer.
+    writer: the package that writing requires, "" for none; None where there is no writer.
     """
 
     name: str
     suffix: str
-    reader: str | None
     writer: str | None
 
     @property
@@ -32,12 +31,12 @@ class Format:
         return self.suffix[1:]
 
 
-OBJ = Format("OBJ", ".obj", "", "")
-OFF = Format("OFF", ".off", "", None)
-PLY = Format("PLY", ".ply", "", "plyfile")
-GLTF = Format("glTF", ".gltf", "", "")
-GLB = Format("GLB", ".glb", "", "")
-STL = Format("STL", ".stl", "trimesh", None)
+OBJ = Format("OBJ", ".obj", "")
+OFF = Format("OFF", ".off", None)
+PLY = Format("PLY", ".ply", "plyfile")
+GLTF = Format("glTF", ".gltf", "")
+GLB = Format("GLB", ".glb", "")
+STL = Format("STL", ".stl", None)
 FORMATS = (OBJ, OFF, PLY, GLTF, GLB, STL)
 BY_KEY = {form.key: form for form in FORMATS}
 
@@ -46,10 +45,10 @@ _COMPRESSED = {".gz": "gunzip", ".bz2": "bunzip2", ".xz": "unxz", ".zst": "unzst
 
 
 def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | None = None) -> Format:
-    """The format of a file that can be read: by its suffix, then as given, then by its first bytes.
+    """The format of a file: by its suffix, then as given, then by its first bytes.
 
     path: None for standard input, which is OBJ where nothing tells otherwise. given: a key.
-    Raises InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED.
+    Raises InputError: UNKNOWN_FORMAT.
     """
     suffix = "" if path is None else Path(path).suffix.lower()
     found = BY_KEY.get(suffix[1:]) or (BY_KEY[given] if given else _by_content(data)) or (OBJ if path is None else None)
@@ -58,14 +57,11 @@ def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | 
             "UNKNOWN_FORMAT",
             f"'{os.fspath(path)}' is compressed. Decompress it first, for instance with {_COMPRESSED[suffix]}.",
         )
-    if found is None or found.reader is None:
-        readable = [form.name for form in FORMATS if form.reader is not None]
+    if found is None:
+        readable = _one_of([form.name for form in FORMATS])
         raise InputError(
-            "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is not an {_one_of(readable)} file. Export the mesh as one."
+            "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is not an {readable} file. Export the mesh as one."
         )
-    if not is_installed(found.reader):
-        remark = f". Without it {_one_of(_names_at_hand('reader'))} can be read."
-        raise not_installed(f"Reading {found.name}", found.reader, "formats", remark)
     return found
 
 
@@ -80,7 +76,7 @@ def output_format(path: str | os.PathLike[str] | None, given: str | None = None)
     if found is None or found.writer is None:
         raise UsageError(
             f"'{shown}' cannot be written as {suffix if found is None else found.name}; "
-            f"{_one_of(_names_at_hand('writer', suffixes=True))} can"
+            f"{_one_of([f'{form.name} ({form.suffix})' for form in _writable()])} can"
         )
     if not is_installed(found.writer):
         raise UsageError(f"writing '{shown}' takes the package {found.writer}; {installation('formats')}")
@@ -88,30 +84,25 @@ def output_format(path: str | os.PathLike[str] | None, given: str | None = None)
 
 
 def readable_suffixes() -> tuple[str, ...]:
-    """The suffixes of the formats that can be read here."""
-    return tuple(form.suffix for form in _at_hand("reader"))
+    """The suffixes of the formats, all of which can be read."""
+    return tuple(form.suffix for form in FORMATS)
 
 
 def formats_table() -> str:
     """Which formats are read and written here, and how to get the others, as lines of text."""
-    rows = [f"{'':6}{'read':34}write"]
-    for form in FORMATS:
-        rows.append(f"{form.name:6}{_state(form.reader):34}{_state(form.writer)}")
+    rows = [f"{'':6}{'read':6}write", *(f"{form.name:6}{'yes':6}{_writing(form)}" for form in FORMATS)]
     return "\n".join(rows)
 
 
-def _state(package: str | None) -> str:
-    if package is None:
+def _writing(form: Format) -> str:
+    if form.writer is None:
         return "no"
-    return "yes" if is_installed(package) else f"no, {installation('formats')}"
+    return "yes" if is_installed(form.writer) else f"no, {installation('formats')}"
 
 
-def _at_hand(use: str) -> list[Format]:
-    return [form for form in FORMATS if (package := getattr(form, use)) is not None and is_installed(package)]
-
-
-def _names_at_hand(use: str, *, suffixes: bool = False) -> list[str]:
-    return [f"{form.name} ({form.suffix})" if suffixes else form.name for form in _at_hand(use)]
+def _writable() -> list[Format]:
+    """Those that can be written with the packages that are installed."""
+    return [form for form in FORMATS if form.writer is not None and is_installed(form.writer)]
 
 
 def _one_of(names: list[str]) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _lsgp
 from .mesh_text import Rows, malformed, quoted, ranges
 from .polygons import PolygonMesh, require_polygons
 
@@ -23,6 +24,8 @@ LINE_END = re.compile(rb"\r\n?|\n")
 # Of the lines of a header that are no comments.
 KEYWORDS = (b"ply", b"format", b"element", b"property", b"end_header")
 CORNER_LISTS = (b"vertex_indices", b"vertex_index")
+# Of a structured array, in bytes.
+LONGEST_ROW = 1 << 30
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,9 @@ class Element:
 def read_ply(data: bytes) -> PolygonMesh:
     """Polygons of a PLY file.  Raises InputError: MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE."""
     elements, byte_order, begin, line = _read_header(data)
+    names = [element.name for element in elements]
+    if names.count("vertex") > 1 or names.count("face") > 1:
+        raise malformed("there are several elements of vertices or of faces.")
     table = _TextTable(data[begin:], line) if byte_order == "" else _BinaryTable(data, begin, byte_order)
     positions = np.empty((0, 3))
     corners, sizes = np.empty(0, np.int64), np.empty(0, np.int64)
@@ -119,7 +125,7 @@ def _extras(elements: list[Element]) -> tuple[str, ...]:
         if element.name in ("vertex", "face"):
             wanted = element.wanted()
             extras += [
-                f"{element.name} {p.name.decode('ascii', 'replace')}"
+                f"{element.name} {quoted(p.name)[1:-1]}"
                 for place, p in enumerate(element.properties)
                 if place not in wanted
             ]
@@ -148,7 +154,7 @@ def _read_header(data: bytes) -> tuple[list[Element], str, int, int]:
             case [b"format", name, _] if name in BYTE_ORDERS:
                 byte_order = BYTE_ORDERS[name]
             case [b"element", name, count] if count.isdigit() and len(count) < 19:
-                elements.append(Element(name.decode("ascii", "replace"), int(count)))
+                elements.append(Element(quoted(name)[1:-1], int(count)))
             case [b"property", b"list", count_type, item_type, name] if (
                 elements and TYPES.get(count_type, "f")[0] != "f" and item_type in TYPES
             ):
@@ -250,15 +256,17 @@ class _BinaryTable:
     def read_points(self, element: Element, wanted: list[int]) -> NDArray[np.float64]:
         table = self._read_uniform(element)
         if table is None:
-            cells = self._walk(element, wanted)
-            return np.array([[cell[0] for cell in row] for row in cells], np.float64).reshape(-1, 3)
-        return np.stack([table[f"{place}"].astype(np.float64) for place in wanted], axis=1)
+            columns = [numbers for _, numbers in self._walk(element, wanted)]
+        else:
+            columns = [table[f"{place}"] for place in wanted]
+        with np.errstate(invalid="ignore"):  # a NaN of any kind
+            return np.stack([column.astype(np.float64) for column in columns], axis=1)
 
     def read_lists(self, element: Element, wanted: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         table = self._read_uniform(element)
         if table is None:
-            lists = [row[0] for row in self._walk(element, [wanted])]
-            return np.concatenate(lists).astype(np.int64), np.fromiter(map(len, lists), np.int64, len(lists))
+            ((counts, items),) = self._walk(element, [wanted])
+            return items.astype(np.int64), counts
         items = table[f"{wanted}"].astype(np.int64)
         return items.ravel(), np.full(len(items), items.shape[1], np.int64)
 
@@ -280,6 +288,8 @@ class _BinaryTable:
                 return None
             fields += [(f"length {place}", self.order + p.count_type), (f"{place}", self.order + p.type, (length,))]
             at += np.dtype(p.count_type).itemsize + length * np.dtype(p.type).itemsize
+            if at - self.at > LONGEST_ROW:
+                return None
         row = np.dtype(fields)
         count = element.count if row.itemsize else 0
         if self.at + count * row.itemsize > len(self.data):
@@ -291,25 +301,21 @@ class _BinaryTable:
         self.at += count * row.itemsize
         return table
 
-    def _walk(self, element: Element, wanted: list[int]) -> list[list[NDArray]]:
-        """The wanted cells of each row, row by row."""
-        rows = []
-        widths = [np.dtype(p.type).itemsize for p in element.properties]
-        for number in range(element.count):
-            cells = {}
-            for place, p in enumerate(element.properties):
-                length = 1
-                if p.count_type is not None:
-                    length = self._number(element, number, self.at, p.count_type)
-                    self.at += np.dtype(p.count_type).itemsize
-                end = self.at + length * widths[place]
-                if length < 0 or end > len(self.data):
-                    raise self._cut_short(element, number)
-                if place in wanted:
-                    cells[place] = np.frombuffer(self.data, self.order + p.type, length, self.at)
-                self.at = end
-            rows.append([cells[place] for place in wanted])
-        return rows
+    def _walk(self, element: Element, wanted: list[int]) -> list[tuple[NDArray[np.int64], NDArray]]:
+        """Row by row: of each wanted property how many numbers each row has, and all of them."""
+        properties = element.properties
+        counts = [0 if p.count_type is None else _signed_width(p.count_type) for p in properties]
+        widths = [np.dtype(p.type).itemsize for p in properties]
+        end, short, lengths, cells = _lsgp.binary_rows(
+            self.data, self.at, element.count, counts, widths, wanted, self.order == "<"
+        )
+        if short >= 0:
+            raise self._cut_short(element, short)
+        self.at = end
+        return [
+            (length, np.frombuffer(cell, self.order + properties[place].type))
+            for place, length, cell in zip(wanted, lengths, cells, strict=True)
+        ]
 
     def _number(self, element: Element, row: int, at: int, type_code: str) -> int:
         width = np.dtype(type_code).itemsize
@@ -322,3 +328,9 @@ class _BinaryTable:
     @staticmethod
     def _cut_short(element: Element, row: int) -> Exception:
         return malformed(f"the file ends in row {row} of {element.count} of element '{element.name}'.")
+
+
+def _signed_width(type_code: str) -> int:
+    """Of an integer, in bytes; negative for a type with a sign."""
+    width = np.dtype(type_code).itemsize
+    return -width if type_code[0] == "i" else width

@@ -107,6 +107,12 @@ MALFORMED = {
         "MALFORMED_FILE",
         "floating",
     ),
+    "ply faces twice": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER, *FACE_HEADER) + PLY_3 + b"3 0 1 2\n3 0 1 2\n",
+        "MALFORMED_FILE",
+        "several elements",
+    ),
     "ply strips": ("a.ply", ply_header(ASCII, "element tristrips 1"), "MALFORMED_FILE", "strips"),
     "ply cut short": ("a.ply", ply_header(ASCII, *VERTEX_HEADER) + b"0 0 0\n", "MALFORMED_FILE", "1 of 3"),
     "ply short row": ("a.ply", ply_header(ASCII, *VERTEX_HEADER) + b"0 0 0\n1 0\n0 1 0\n", "MALFORMED_FILE", "Line 9"),
