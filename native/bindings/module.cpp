@@ -11,6 +11,7 @@
 #include <initializer_list>
 
 #include "binary_rows.hpp"
+#include "ear_clipping.hpp"
 #include "island_fit.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh_text.hpp"
@@ -674,6 +675,7 @@ PYBIND11_MODULE(_lsgp, module) {
   using py::literals::operator""_a;
   define_mesh_text(module);
   define_binary_rows(module);
+  define_ear_clipping(module);
   define_polygons(module);
   define_island_fit(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);

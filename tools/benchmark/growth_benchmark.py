@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How time and memory grow with cones, holes, needles and components; --write makes docs/reference/growth.md.
+"""How time and memory grow with cones, and with what becomes frequent; --write makes docs/reference/growth.md.
 
-Each case runs at n, 2n and 4n in processes of their own: CPU seconds of all threads, and the peak of memory above what
-the process had before. Needs numpy beside lsgp.
+Each case runs at n, 2n and 4n in processes of their own, each family of meshes with each preset, as quads and as a file
+to be read at some 1,000 to 30,000 triangles: CPU seconds of all threads, and the peak of memory above what the process
+had before. Needs numpy and xatlas beside lsgp.
 
-    python tools/benchmark/growth_benchmark.py [--write] [case ...]
+    python tools/benchmark/growth_benchmark.py [--write] [--largest 10000] [--limit 120] [case or family ...]
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import resource
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import lsgp
 import numpy as np
@@ -25,6 +29,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 import meshes  # noqa: E402
+from growth_families import FAMILIES, comb, of_polygons  # noqa: E402
 
 PAGE = ROOT / "docs" / "reference" / "growth.md"
 SEED = 0
@@ -61,12 +66,12 @@ def seamless(count: int) -> Run:
     return unwrap(surface, random_cones(surface, count), seamless=lsgp.Seamless())
 
 
-def holes(count: int) -> Run:
+def plate(count: int) -> Run:
     mesh = meshes.plate(round(math.sqrt(count)))
     return unwrap(lsgp.Surface(mesh.positions, mesh.triangles), [])
 
 
-def needles(count: int) -> Run:
+def fan(count: int) -> Run:
     """Thin triangles around one vertex: a boundary of as many corners, and one vertex with all triangles."""
     turn = np.arange(count) / count * 2 * np.pi
     positions = np.concatenate([np.zeros((1, 3)), np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)])
@@ -94,10 +99,34 @@ CASES = {
     "place": Case("cones placed on 20,480 triangles", place, 500),
     "conformal": Case("random cones on 20,480 triangles, conformal", conformal, 200),
     "seamless": Case("random cones on 20,480 triangles, seamless", seamless, 200),
-    "holes": Case("holes in a plate, 30 triangles each", holes, 784),
-    "needles": Case("thin triangles around one vertex", needles, 11250),
+    "plate": Case("holes in a plate, 30 triangles each", plate, 784),
+    "fan": Case("thin triangles around one vertex", fan, 11250),
     "parts": Case("parts of 32 triangles", parts, 500),
 }
+
+
+SIZES = (1_000, 3_000, 10_000, 30_000)
+WARM_UP = 100  # triangles; the first call of a process imports modules and reads tables
+SHORTEST = 0.05  # seconds; shorter runs are noise, and no part of an exponent
+LIMIT, CASE_LIMIT = 120, 600  # CPU seconds of a run
+QUADS, READ = "quads", "read"
+
+
+def family_run(family: str, how: str, count: int) -> tuple[Run, int]:
+    """What a preset, quads or reading do with a mesh of this family, and its number of triangles."""
+    made = FAMILIES[family]
+    if how == READ:
+        mesh = comb(max(1, round(count / 16)))
+        return (lambda: of_polygons(mesh)), count
+    surface = made.build(count)
+    if how == QUADS:
+        return (lambda: lsgp.remesh_to_quads(surface)), len(surface.triangles)
+    return (lambda: lsgp.auto_unwrap(surface, preset=how, **made.options)), len(surface.triangles)
+
+
+def ways(family: str) -> list[str]:
+    made = FAMILIES[family]
+    return [*([READ] if family == "teeth" else []), *made.presets, *([QUADS] if made.is_closed else [])]
 
 
 def peak_memory() -> int:
@@ -105,16 +134,37 @@ def peak_memory() -> int:
     return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
 
 
-def measure_here(case: str, count: int) -> dict[str, float]:
-    run = CASES[case].build(count)
+def measure_here(what: str, how: str, count: int) -> dict[str, Any]:
+    """how: of a family; "" for a case.  A refusal is one of its codes."""
+    triangles = 0
+    if what in CASES:
+        run = CASES[what].build(count)
+    else:
+        family_run(what, how, WARM_UP)[0]()
+        run, triangles = family_run(what, how, count)
     before, begin = peak_memory(), time.process_time()
-    run()
-    return {"seconds": time.process_time() - begin, "bytes": peak_memory() - before}
+    try:
+        run()
+        refused = None
+    except lsgp.LsgpError as error:
+        refused = error.code
+    seconds = time.process_time() - begin
+    return {"seconds": seconds, "bytes": peak_memory() - before, "triangles": triangles, "refused": refused}
 
 
-def measure(case: str, count: int) -> dict[str, float]:
-    command = [sys.executable, __file__, "--measure", case, str(count)]
-    return json.loads(subprocess.run(command, capture_output=True, text=True, check=True, timeout=600).stdout)
+def measure(what: str, how: str, count: int, limit: float) -> dict[str, Any] | None:
+    """In a process of its own; None where it takes more CPU seconds than the limit."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit), math.ceil(limit) + 5))
+
+    command = [sys.executable, __file__, "--measure", what, how, str(count)]
+    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=limited)
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return None
+    if done.returncode:
+        raise RuntimeError(f"{what} {how} {count}: {done.stderr[-2000:]}")
+    return json.loads(done.stdout)
 
 
 def power(least: float, most: float) -> str:
@@ -122,11 +172,16 @@ def power(least: float, most: float) -> str:
     return f"{math.log(max(most, 1e-9) / max(least, 1e-9), 4):.1f}"
 
 
-def table(cases: list[str]) -> str:
+def exponent(sizes: list[float], values: list[float]) -> float:
+    """Of growth, by least squares of the logarithms."""
+    return float(np.polyfit(np.log(sizes), np.log(np.maximum(values, 1)), 1)[0])
+
+
+def case_table(cases: list[str]) -> str:
     lines = ["| what grows | n | seconds at n, 2n, 4n | power | MB at n, 2n, 4n | power |", "|---|--:|--:|--:|--:|--:|"]
     for name in cases:
         case = CASES[name]
-        found = [measure(name, case.first * factor) for factor in (1, 2, 4)]
+        found = [measure(name, "", case.first * factor, CASE_LIMIT) for factor in (1, 2, 4)]
         seconds, megabytes = [f["seconds"] for f in found], [f["bytes"] / 1e6 for f in found]
         cells = [
             case.what,
@@ -140,22 +195,63 @@ def table(cases: list[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def family_table(families: list[str], largest: int, limit: float) -> str:
+    sizes = [size for size in SIZES if size <= largest]
+    heads = ["family", "as", *(f"{size:,}" for size in sizes), "power", f"MB at {sizes[0]:,}", "at the last", "power"]
+    lines = ["| " + " | ".join(heads) + " |", "|---|---|" + "--:|" * (len(heads) - 2)]
+    for name in families:
+        for how in ways(name):
+            lines.append("| " + " | ".join([FAMILIES[name].what, how, *family_cells(name, how, sizes, limit)]) + " |")
+            print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines) + "\n"
+
+
+def family_cells(name: str, how: str, sizes: list[int], limit: float) -> list[str]:
+    """The times, their exponent, the memory at the first and the last size that was measured, and its exponent."""
+    cells: list[str] = []
+    found: list[dict[str, Any]] = []
+    for size in sizes:
+        one = measure(name, how, size, limit)
+        if one is None:
+            cells.append(f"> {limit:g}")
+            break
+        cells.append(f"{one['seconds']:.2f}" if one["refused"] is None else f"`{one['refused']}`")
+        if one["refused"] is None and one["seconds"] >= SHORTEST:
+            found.append(one)
+    cells += ["-"] * (len(sizes) - len(cells))
+    if len(found) < 2:
+        return [*cells, "-", "-", "-", "-"]
+    triangles, seconds, megabytes = zip(*((f["triangles"], f["seconds"], f["bytes"] / 1e6) for f in found), strict=True)
+    memory = [f"{megabytes[0]:.0f}", f"{megabytes[-1]:.0f}", f"{exponent(triangles, megabytes):.2f}"]
+    return [*cells, f"{exponent(triangles, seconds):.2f}", *memory]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("cases", nargs="*", metavar="case", help=f"of {', '.join(CASES)}; all by default")
-    parser.add_argument("--write", action="store_true", help=f"the table to {PAGE.relative_to(ROOT)}")
-    parser.add_argument("--measure", nargs=2, metavar=("case", "n"), help=argparse.SUPPRESS)
+    known = [*CASES, *FAMILIES]
+    parser.add_argument("names", nargs="*", metavar="name", help=f"of {', '.join(known)}; all by default")
+    parser.add_argument("--largest", type=int, default=SIZES[-1], help="triangles of a family")
+    parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds of a run of a family")
+    parser.add_argument("--write", action="store_true", help=f"the tables to {PAGE.relative_to(ROOT)}")
+    parser.add_argument("--measure", nargs=3, metavar=("name", "how", "n"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.measure:
-        case, count = arguments.measure
-        print(json.dumps(measure_here(case, int(count))))
+        name, how, count = arguments.measure
+        print(json.dumps(measure_here(name, how, int(count))))
         return
-    found = table(arguments.cases or list(CASES))
-    print(found)
+    names = arguments.names or known
+    tables = {}
+    if cases := [name for name in names if name in CASES]:
+        tables["| what grows"] = case_table(cases)
+    if families := [name for name in names if name in FAMILIES]:
+        tables["| family"] = family_table(families, arguments.largest, arguments.limit)
+    print("\n".join(tables.values()))
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
-        begin = page.index("| what grows")
-        PAGE.write_text(page[:begin] + found + page[page.index("\n## ", begin) :], encoding="utf-8")
+        for head, table in tables.items():
+            begin = page.index(head)
+            page = page[:begin] + table + page[page.index("\n\n", begin) + 1 :]
+        PAGE.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

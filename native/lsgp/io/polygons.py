@@ -10,18 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
-from ..base.ear_clipping import (
-    ALLOWS_ANY,
-    FLAT_EAR_COST,
-    NEARLY_STRAIGHT,
-    NEARLY_TOUCHING,
-    NEEDLE_PENALTY,
-    ROUNDING,
-    STRICT,
-    TINY,
-    TOUCHING_SHARE,
-    clip_ears_of_one,
-)
+from ..base.ear_clipping import clip_ears
 from ..base.edge_keys import edge_keys
 from ..base.equality import EqualByContent
 from ..base.short_repr import ShortRepr
@@ -32,8 +21,8 @@ from .mesh_text import ranges
 ON_FIRST_DIAGONAL = np.array([[0, 1, 2], [0, 2, 3]])
 ON_SECOND_DIAGONAL = np.array([[0, 1, 3], [1, 2, 3]])
 
-# Corners of a polygon from which on it is cut by itself: many at once test every ear against all corners.
-LARGE = 1024
+# Rounding of a polygon's area where it has the size of 1.
+ROUNDING = 1e-14
 
 # Polygon corners worked on at once: bounds the memory of the triangulation.
 CHUNK = 1 << 19
@@ -163,7 +152,7 @@ def triangulate(mesh: PolygonMesh) -> Triangulation:
                 on_first = _lsgp.quad_diagonals(mesh.positions, mesh.corners[rows])
                 local = np.where(on_first[:, None, None], ON_FIRST_DIAGONAL, ON_SECOND_DIAGONAL)
             else:
-                local = _clip_ears(_in_plane(mesh.positions[mesh.corners[rows]]))
+                local = clip_ears(_in_plane(mesh.positions[mesh.corners[rows]]))
             target = firsts[polygons][:, None] + np.arange(size - 2)
             corner[target] = rows[np.arange(len(rows))[:, None, None], local]
         edges = _polygon_edges(mesh)
@@ -220,7 +209,7 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
             a, b = own[p], own[q]
             return (a * n + b if a < b else b * n + a) in joined
 
-        local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
+        (local,) = clip_ears(_in_plane(mesh.positions[mesh.corners[row]][None]), is_taken)
         corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
         vertices = mesh.corners[row[local]]
         first_alike[alike] = vertices.tolist()
@@ -267,93 +256,6 @@ def _in_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([_dot(points, first[:, None]), _dot(points, second[:, None])], axis=2)
 
 
-def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Triangles (k, n - 2, 3), local corners, of k polygons (k, n, 2) at once, one ear of each polygon at a time.
-
-    A polygon tries its cheapest ear, those of which two corners coincide last; if another corner lies in it, the ear is
-    put aside. A polygon that runs out of ears becomes less strict by a step: corners close to the diagonal are allowed,
-    then corners inside, then the rest becomes a fan. After an ear it is strict again.
-    """
-    k, n, _ = points.shape
-    if n >= LARGE:
-        return np.stack([clip_ears_of_one(polygon) for polygon in points])
-    every = np.arange(n)
-    before = np.tile(np.roll(every, 1), (k, 1))
-    after = np.tile(np.roll(every, -1), (k, 1))
-    alive = np.ones((k, n), bool)
-    leniency = np.zeros(k, np.int64)
-    made = np.zeros(k, np.int64)
-    triangles = np.empty((k, n - 2, 3), np.int64)
-
-    def ear_cost(row: NDArray[np.int64], tip: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Squared length of the diagonal and penalties, FLAT_EAR_COST without extent; infinite where it is no ear."""
-        p, q = before[row, tip], after[row, tip]
-        back, ahead = points[row, tip] - points[row, p], points[row, q] - points[row, tip]
-        lengths = [_dot(side, side) for side in (back, ahead, points[row, q] - points[row, p])]
-        area = _cross(back, ahead)
-        needle = area <= NEARLY_STRAIGHT * np.sqrt(lengths[0] * lengths[1])
-        cost = np.where(area > ROUNDING, lengths[2] + NEEDLE_PENALTY * needle, np.inf)
-        cost = np.where(np.min(lengths, axis=0) <= ROUNDING**2, FLAT_EAR_COST, cost)
-        return np.where(alive[row, tip], cost, np.inf)
-
-    cost = ear_cost(np.arange(k)[:, None], every[None])
-    rows = np.arange(k)
-    while len(rows):
-        tip = cost[rows].argmin(axis=1)
-        stuck = np.isinf(cost[rows, tip])
-        again = rows[stuck]
-        leniency[again] += 1
-        cost[again] = ear_cost(again[:, None], every[None])
-        for row in again[leniency[again] > ALLOWS_ANY]:
-            ring = every[alive[row]]
-            triangles[row, made[row] :] = np.stack([np.full(len(ring) - 2, ring[0]), ring[1:-1], ring[2:]], axis=1)
-            made[row] = n - 2
-        row, tip = rows[~stuck], tip[~stuck]
-        p, q = before[row, tip], after[row, tip]
-        blocked = _occupied(points, alive, row, (p, tip, q), leniency[row])
-        cost[row[blocked], tip[blocked]] = np.inf
-        row, p, tip, q = row[~blocked], p[~blocked], tip[~blocked], q[~blocked]
-        triangles[row, made[row]] = np.stack([p, tip, q], axis=1)
-        made[row] += 1
-        leniency[row] = 0
-        alive[row, tip] = False
-        cost[row, tip] = np.inf
-        after[row, p], before[row, q] = q, p
-        cost[row, p] = ear_cost(row, p)
-        cost[row, q] = ear_cost(row, q)
-        rows = rows[made[rows] < n - 2]
-    return triangles
-
-
-def _occupied(
-    points: NDArray[np.float64],
-    alive: NDArray[np.bool_],
-    row: NDArray[np.int64],
-    ear: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
-    leniency: NDArray[np.int64],
-) -> NDArray[np.bool_]:
-    """Whether another corner lies in the ear of each given polygon, or on its diagonal.
-
-    ear: the corner before the tip, the tip, and the one after it.
-    """
-    others = points[row]
-    a, b, c = (points[row, corner][:, None] for corner in ear)
-    diagonal = np.sqrt(_dot(a - c, a - c))
-    area = _cross(b - a, c - b)
-    height = area / np.maximum(diagonal, TINY)
-    close = np.maximum(np.minimum(NEARLY_TOUCHING, TOUCHING_SHARE * height), ROUNDING)
-    margin = np.where((leniency == STRICT)[:, None], close, ROUNDING)
-    inside = (
-        (_cross(b - a, others - a) >= -ROUNDING)
-        & (_cross(c - b, others - b) >= -ROUNDING)
-        & (_cross(a - c, others - c) >= -margin * diagonal)
-    )
-    # A corner at the same place as one of the ear's own touches it only: the two sides of a keyhole.
-    for own in (a, b, c):
-        inside &= (others != own).any(axis=2)
-    return (inside & alive[row]).any(axis=1) & (leniency < ALLOWS_ANY) & (area[:, 0] > ROUNDING)
-
-
 def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
     """Every polygon edge once, the smaller vertex first, in order."""
     return _lsgp.polygon_edges(mesh.corners, mesh.sizes, len(mesh.positions))
@@ -361,7 +263,3 @@ def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     return (a * b).sum(axis=-1)
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -11,7 +11,7 @@ from collections import deque
 import numpy as np
 
 from ..base.arguments import FloatArray
-from ..base.ear_clipping import clip_ears_of_one
+from ..base.ear_clipping import clip_ears
 from .island_gaps import ComplexArray, Indices
 
 # Corners of a border that lie on a line so well, relative to the square root of the island's area, are left out.
@@ -61,7 +61,8 @@ def _cover(place: ComplexArray, triangles: Indices, borders: Indices) -> Indices
     low = place[polygon].real.min() + 1j * place[polygon].imag.min()
     size = np.abs(place[polygon] - low).max()
     points = (place[polygon] - low) / size
-    cover = polygon[clip_ears_of_one(np.stack([points.real, points.imag], axis=1))]
+    (ears,) = clip_ears(np.stack([points.real, points.imag], axis=1)[None])
+    cover = polygon[ears]
     around = np.abs(place[borders[:, 1]] - place[borders[:, 0]]).sum()
     missing = np.abs(doubled_areas(place, cover)).sum() - areas.sum()
     if abs(missing) > _ROUNDING * tolerance * around or np.bincount(cover.ravel()).max() > _MOST_AROUND:

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons of thousands of corners: cut by the rule of small ones, in memory and time that grow with their corners."""
+"""Polygons of any number of corners: covered exactly where they do not cross themselves, in nearly linear time."""
 
 from __future__ import annotations
 
 import time
-import tracemalloc
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from lsgp.base import ear_clipping
-from lsgp.base.ear_clipping import clip_ears_of_one
-from lsgp.io import polygons
+from lsgp.base.ear_clipping import clip_ears
 from lsgp.io.polygons import PolygonMesh, triangulate
 from polygon_meshes import polygon_areas, polygon_mesh, require_triangulation, triangle_areas
 
@@ -72,18 +69,56 @@ def back_to_back(n: int) -> PolygonMesh:
     return polygon_mesh(points, [list(range(n)), list(range(n))[::-1]])
 
 
-@settings(max_examples=150, deadline=None)
-@given(st.integers(5, 60), st.integers(0, 10**6), st.booleans())
-@example(5, 8155, True)  # two ears with one diagonal, whose length is rounded from either side
-def test_alone_and_among_others_a_polygon_is_cut_the_same(n: int, seed: int, simple: bool) -> None:
-    rng = np.random.default_rng(seed)
-    points = star(n, seed)[:, :2] if simple else rng.normal(size=(n, 2)) / 4
-    (expected,) = polygons._clip_ears(points[None])
-    assert np.array_equal(clip_ears_of_one(points), expected)
+def keyholes(holes: int, corners: int, seed: int) -> np.ndarray:
+    """A rectangle with star-shaped holes, to each of which its lower side runs and back along the same edge."""
+    random = np.random.default_rng(seed)
+    angles = -np.pi / 2 - np.arange(corners) / corners * 2 * np.pi
+    parts = [[[0, 0]]]
+    for hole in range(holes):
+        radii = random.uniform(0.2, 0.45, corners)
+        around = np.column_stack([hole + 0.5 + radii * np.cos(angles), 0.5 + radii * np.sin(angles)])
+        foot = [[hole + 0.5, 0]]
+        parts += [foot, around, around[:1], foot]
+    return np.concatenate([*parts, [[holes, 0], [holes, 1], [0, 1]]]) / holes
+
+
+def require_exact_cover(points: np.ndarray) -> None:
+    """Of a counter-clockwise polygon (n, 2)."""
+    (triangles,) = clip_ears(points[None])
+    areas = signed_areas(points[triangles])
+    whole = float(signed_areas(points[None])[0])
+    assert areas.min() > -1e-12 * whole
+    assert areas.sum() == pytest.approx(whole, rel=1e-9)
+
+
+def signed_areas(polygons: np.ndarray) -> np.ndarray:
+    x, y = polygons[..., 0], polygons[..., 1]
+    return (x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1)).sum(axis=-1) / 2
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(5, 200), st.integers(0, 10**6))
+def test_stars_are_covered_exactly(n: int, seed: int) -> None:
+    require_exact_cover(star(n, seed)[:, :2])
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.integers(1, 8), st.integers(3, 20), st.integers(0, 10**6))
+def test_polygons_that_run_to_holes_and_back_are_covered_exactly(holes: int, corners: int, seed: int) -> None:
+    require_exact_cover(keyholes(holes, corners, seed))
+
+
+def test_the_shortest_diagonal_that_is_not_taken_comes_first() -> None:
+    """Of a polygon whose corners have different angles: a fifth one off a square."""
+    points = np.array([[0, 0], [1, 0], [1, 1], [0.4, 1.1], [0, 1]])
+    ((first, *_),) = clip_ears(points[None])
+    assert first.tolist() == [2, 3, 4]
+    ((first, *_),) = clip_ears(points[None], lambda a, b: {a, b} == {2, 4})
+    assert first.tolist() == [3, 4, 0]
 
 
 @pytest.mark.parametrize("name", PLANAR)
-@pytest.mark.parametrize("n", [polygons.LARGE + 1, 4001])
+@pytest.mark.parametrize("n", [1025, 4001])
 def test_large_polygons_are_covered_exactly(name: str, n: int) -> None:
     points = PLANAR[name](n)
     mesh = polygon_mesh(points, [list(range(len(points)))])
@@ -95,14 +130,14 @@ def test_large_polygons_are_covered_exactly(name: str, n: int) -> None:
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.sampled_from(sorted(OTHERS)), st.integers(polygons.LARGE, 2 * polygons.LARGE), st.integers(0, 999))
+@given(st.sampled_from(sorted(OTHERS)), st.integers(1024, 2048), st.integers(0, 999))
 def test_other_large_polygons_lose_no_corner(name: str, n: int, seed: int) -> None:
     points = OTHERS[name](n, np.random.default_rng(seed))
     mesh = polygon_mesh(points, [list(range(n))])
     require_triangulation(mesh, triangulate(mesh))
 
 
-@pytest.mark.parametrize("size", [60, polygons.LARGE + 5])
+@pytest.mark.parametrize("size", [60, 1029])
 def test_polygons_back_to_back_share_no_diagonal(size: int) -> None:
     mesh = back_to_back(size)
     triangulation = triangulate(mesh)
@@ -113,39 +148,17 @@ def test_polygons_back_to_back_share_no_diagonal(size: int) -> None:
     assert count.max() == 2
 
 
-def test_memory_grows_with_the_corners() -> None:
-    peaks = []
-    for n in (1200, 2400):
-        mesh = back_to_back(n)
-        tracemalloc.start()
-        triangulate(mesh)
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    assert peaks[1] < 10e6
-    assert peaks[1] / peaks[0] < 2.5
-
-
 @pytest.mark.parametrize("name", PLANAR)
 def test_time_grows_little_faster_than_the_corners(name: str) -> None:
-    points = PLANAR[name](20_001)
+    points = PLANAR[name](60_001)
     begin = time.process_time()
     triangulate(polygon_mesh(points, [list(range(len(points)))]))
     assert time.process_time() - begin < 20
 
 
-def test_a_polygon_that_crosses_itself_everywhere_has_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    looks = 0
-    near = ear_clipping._Places.near
-
-    def counted(self: object, *box: float):
-        nonlocal looks
-        for corners in near(self, *box):
-            looks += 1 + len(corners)
-            yield corners
-
-    monkeypatch.setattr(ear_clipping._Places, "near", counted)
-    n = 1500
+def test_a_polygon_that_crosses_itself_everywhere_has_a_bound() -> None:
+    n = 20_000
     points = np.random.default_rng(0).normal(size=(n, 2)) / 4
-    assert clip_ears_of_one(points).shape == (n - 2, 3)
-    # The test of one ear may go over it.
-    assert looks <= ear_clipping.MOST_LOOKS * n + 3 * n
+    begin = time.process_time()
+    assert clip_ears(points[None]).shape == (1, n - 2, 3)
+    assert time.process_time() - begin < 20

@@ -74,16 +74,10 @@ def test_concave_polygons_are_covered_exactly(points: np.ndarray) -> None:
     assert areas.sum() == pytest.approx(whole, rel=1e-9)
 
 
-@pytest.mark.parametrize("by_itself", [False, True], ids=["many at once", "one"])
 @settings(max_examples=150, deadline=None)
 @given(star_shaped(), st.lists(st.integers(1, 3), min_size=28, max_size=28))
-def test_concave_polygons_with_repeated_corners_are_covered(
-    by_itself: bool, points: np.ndarray, times: list[int]
-) -> None:
-    repeated = np.repeat(points, times[: len(points)], axis=0)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lsgp.io.polygons.LARGE", 3 if by_itself else 1024)
-        mesh, triangulation = one_polygon(repeated)
+def test_concave_polygons_with_repeated_corners_are_covered(points: np.ndarray, times: list[int]) -> None:
+    mesh, triangulation = one_polygon(np.repeat(points, times[: len(points)], axis=0))
     areas = triangle_areas(mesh, triangulation)
     (whole,) = polygon_areas(mesh)
     assert areas.min() > -1e-12 * whole
