@@ -15,15 +15,50 @@ from .arrays import read_array
 
 def target_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Mesh objects to work on, one per mesh: those in edit mode, or the selected ones in object mode."""
-    if context.mode == "EDIT_MESH":
-        return list(context.objects_in_mode_unique_data)
-    if context.mode != "OBJECT":
-        return []
     one_per_mesh: dict[bpy.types.Mesh, bpy.types.Object] = {}
-    for obj in context.selected_objects:
-        if obj.type == "MESH":
-            one_per_mesh.setdefault(obj.data, obj)
+    for obj in _edited_objects(context) if mode(context) == "EDIT_MESH" else selected_meshes(context):
+        one_per_mesh.setdefault(obj.data, obj)
     return list(one_per_mesh.values())
+
+
+def selected_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The selected mesh objects in object mode; none in other modes.
+
+    An object can be in edit mode while the active one is in object mode.
+    """
+    if mode(context) != "OBJECT":
+        return []
+    objects = getattr(context, "selected_objects", None)
+    if objects is None:
+        objects = context.view_layer.objects.selected
+    return [obj for obj in objects if obj.type == "MESH" and obj.mode == "OBJECT"]
+
+
+def _edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The mesh objects in edit mode, the active one first."""
+    objects = getattr(context, "objects_in_mode_unique_data", None)
+    if objects is None:
+        active = active_object(context)
+        others = [obj for obj in context.view_layer.objects if obj.type == "MESH" and obj.mode == "EDIT"]
+        objects = [active, *others]
+    return list(objects)
+
+
+# A context without a window, as that of Blender's timers, has no members that belong to a screen, and says that all is
+# in object mode.
+
+
+def mode(context: bpy.types.Context) -> str:
+    """As `context.mode`, also without a window."""
+    active = active_object(context)
+    if context.screen is not None or active is None:
+        return context.mode
+    return "EDIT_MESH" if (active.type, active.mode) == ("MESH", "EDIT") else active.mode
+
+
+def active_object(context: bpy.types.Context) -> bpy.types.Object | None:
+    """As `context.object`, also without a window."""
+    return getattr(context, "object", context.view_layer.objects.active)
 
 
 def selects_by_uv(context: bpy.types.Context) -> bool:

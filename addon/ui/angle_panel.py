@@ -7,13 +7,15 @@ from collections.abc import Iterator
 
 import bpy
 
-from ..core import identifiers
+from ..core import findings, identifiers
 from ..core.cone_angles import Kind
+from ..core.errors import object_errors
 from ..core.text import degrees
 from ..jobs.angles.angle_table import Row, TablePart, TableSettings, current_table, last_settings, verdict
 from ..overlay import cache
 from ..overlay.content import Cone
 from .panels import ConeUnwrapSubPanel
+from .text import draw_wrapped
 
 # A table with more rows or parts would not be readable.
 MOST_ROWS = 100
@@ -35,7 +37,11 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         settings = last_settings(context)
-        table = current_table(context.object, settings)
+        try:
+            table = current_table(context.object, settings)
+        except object_errors() as error:
+            draw_wrapped(layout, context, findings.explain(error), icon="ERROR")
+            return
         if table is None:
             layout.label(text="This mesh is large")
             layout.operator(identifiers.UPDATE_TABLE, icon="FILE_REFRESH")

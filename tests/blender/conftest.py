@@ -30,14 +30,20 @@ else:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
     @pytest.fixture
-    def reports(capfd):
-        """What Blender reported so far, as printed in background mode: call it to read and forget it."""
+    def printed(capfd):
+        """All that Blender and Python printed so far, the outputs of results and of errors: call it to read and forget
+        them."""
         import ctypes
 
         c_library = ctypes.CDLL("ucrtbase" if os.name == "nt" else None)
 
-        def read() -> str:
+        def read() -> tuple[str, str]:
             c_library.fflush(None)
-            return capfd.readouterr().out
+            return tuple(capfd.readouterr())
 
         return read
+
+    @pytest.fixture
+    def reports(printed):
+        """What Blender reported so far, as printed in background mode: call it to read and forget it."""
+        return lambda: printed()[0]

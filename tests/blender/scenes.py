@@ -271,7 +271,7 @@ def snapshot(obj: bpy.types.Object) -> dict[str, object]:
     state["uv layers"] = [layer.name for layer in obj.data.uv_layers]
     state["active uv layer"] = obj.data.uv_layers.active_index
     state["render uv layer"] = [layer.active_render for layer in obj.data.uv_layers]
-    state["materials"] = list(obj.data.materials)
+    state["materials"] = [material and material.name for material in obj.data.materials]
     state["modifiers"] = [(modifier.name, modifier.type) for modifier in obj.modifiers]
     keys = mesh.shape_keys.key_blocks if mesh.shape_keys else ()
     state["shape keys"] = {key.name: [tuple(point.co) for point in key.data] for key in keys}

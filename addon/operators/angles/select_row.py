@@ -11,6 +11,7 @@ from mathutils import Vector
 from ...core import identifiers
 from ...mesh.reader import reader
 from ...mesh.selection import VERTEX_MODE, select_elements, select_stored_vertex, set_select_mode
+from ...mesh.targets import active_object
 from ...overlay import cache
 from ..shared.polling import poll_active_mesh
 
@@ -40,11 +41,11 @@ class MESH_OT_cone_select_one(bpy.types.Operator):
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        obj = context.object
+        obj = active_object(context)
         if self.vertex >= reader(obj.data).size()[0]:
             self.report({"WARNING"}, "The mesh has changed; this vertex no longer exists")
             return {"CANCELLED"}
-        if context.mode == "EDIT_MESH":
+        if obj.mode == "EDIT":
             set_select_mode(context, VERTEX_MODE, [obj.data])
             if not select_elements(obj.data, extend=self.extend, vertices=[self.vertex]):
                 self.report({"WARNING"}, "This cone is hidden; reveal it to select it")

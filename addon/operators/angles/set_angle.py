@@ -17,6 +17,7 @@ from ...core.text import counted, degrees
 from ...jobs.angles.prescribing import missing_curvature
 from ...mesh.angles import write_angles
 from ...mesh.cones import mark_cones, marked_cones, selected_vertices
+from ...mesh.targets import active_object
 from ..shared.polling import poll_edit_mesh
 from .base import AngleOperator
 
@@ -73,7 +74,7 @@ class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
 
     def objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         if self.vertex >= 0:
-            return [context.object]
+            return [active_object(context)]
         objects = super().objects(context)
         return [obj for obj in objects if len(self._cones(obj))] or objects[:1]
 

@@ -4,7 +4,10 @@
 import bpy
 
 from ...core import identifiers
+from ...core.errors import object_errors
 from ...jobs.angles.angle_table import current_table, last_settings
+from ...mesh.targets import active_object
+from ..shared.conclusion import conclude
 from ..shared.polling import ComputingOperator, poll_active_mesh
 
 
@@ -21,5 +24,9 @@ class MESH_OT_cone_update_table(ComputingOperator, bpy.types.Operator):
         return super().poll(context) and poll_active_mesh(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        current_table(context.object, last_settings(context), on_request=True)
+        obj = active_object(context)
+        try:
+            current_table(obj, last_settings(context), on_request=True)
+        except object_errors() as error:
+            return conclude(self, [], {}, {obj.name: error})
         return {"FINISHED"}

@@ -16,6 +16,7 @@ from ...jobs.tasks.summaries import quad_summary
 from ...mesh.carried_uv import uv_findings
 from ...mesh.quad_object import add_quad_object
 from ...mesh.region_read import Faces, Groups
+from ...mesh.targets import selected_meshes
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.polling import poll_computation_on_objects
 from ..shared.properties import ConeGroupProperty
@@ -133,7 +134,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
 
     def sources(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], Faces]:
         # Objects with one mesh may differ in size, and each gets quads of its own.
-        return [obj for obj in context.selected_objects if obj.type == "MESH"], Faces.ALL
+        return selected_meshes(context), Faces.ALL
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], QuadTask]]:
         lsgp = native.lsgp

@@ -5,7 +5,7 @@ import bpy
 
 from ...core import native
 from ...mesh import changes
-from ...mesh.targets import target_objects
+from ...mesh.targets import active_object, mode, selected_meshes, target_objects
 
 
 def _poll_targets(operator: type[bpy.types.Operator], context: bpy.types.Context, wanted: str) -> bool:
@@ -23,7 +23,7 @@ def _poll_targets(operator: type[bpy.types.Operator], context: bpy.types.Context
 def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where a mesh is in edit mode."""
     wanted = "Enter edit mode on a mesh first"
-    if context.mode != "EDIT_MESH":
+    if mode(context) != "EDIT_MESH":
         operator.poll_message_set(wanted)
         return False
     return _poll_targets(operator, context, wanted)
@@ -36,7 +36,8 @@ def poll_meshes(operator: type[bpy.types.Operator], context: bpy.types.Context) 
 
 def poll_active_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where the active object is a mesh, in edit mode or object mode."""
-    if context.mode in {"EDIT_MESH", "OBJECT"} and context.object is not None and context.object.type == "MESH":
+    active = active_object(context)
+    if mode(context) in {"EDIT_MESH", "OBJECT"} and active is not None and active.type == "MESH":
         return True
     operator.poll_message_set("Make a mesh the active object, in edit mode or object mode")
     return False
@@ -51,7 +52,7 @@ def poll_computation_on_objects(operator: type[bpy.types.Operator], context: bpy
     """True where meshes are selected in object mode and the computing library is available."""
     if not _poll_library(operator):
         return False
-    if context.mode != "OBJECT" or not target_objects(context):
+    if not selected_meshes(context):
         operator.poll_message_set("Select mesh objects in object mode")
         return False
     return True
