@@ -192,9 +192,14 @@ def _object_shape(obj: bpy.types.Object) -> tuple[NDArray[np.float64], NDArray[n
     return (axes.T * (sizes / size)) @ axes, turned @ axes, size
 
 
+def is_editable(obj: bpy.types.Object) -> bool:
+    """Whether the mesh belongs to this file.  Of an override of another file's mesh Blender saves no changes."""
+    return obj.data.is_editable and obj.data.override_library is None
+
+
 def require_editable(obj: bpy.types.Object) -> None:
     """Raise Refused where the mesh belongs to another file."""
-    if not obj.data.is_editable:
+    if not is_editable(obj):
         raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
 
 

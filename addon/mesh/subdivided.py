@@ -42,6 +42,7 @@ def subdivide(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> Subdivided | None:
         return None
     scene = bpy.data.scenes.new(NAME)
     copy = mesh.copy()
+    keys = None if copy.shape_keys is None else copy.shape_keys.session_uid
     stand_in = bpy.data.objects.new(NAME, copy)
     try:
         stand_in.shape_key_clear()
@@ -59,7 +60,9 @@ def subdivide(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> Subdivided | None:
         evaluated = stand_in.evaluated_get(layer.depsgraph).data
         return Subdivided(_places(evaluated), _areas(evaluated, len(mesh.polygons)))
     finally:
-        bpy.data.batch_remove([scene, stand_in, copy])
+        # Blender keeps what `shape_key_clear` took from the copy.
+        left = [key for key in bpy.data.shape_keys if key.session_uid == keys]
+        bpy.data.batch_remove([scene, stand_in, copy, *left])
 
 
 def _places(subdivided: bpy.types.Mesh) -> NDArray[np.float32]:

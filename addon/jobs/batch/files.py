@@ -8,6 +8,8 @@ from pathlib import Path
 
 import bpy
 
+from ...mesh.region_read import is_editable
+
 SUFFIXES = (".blend", ".glb", ".gltf", ".fbx")
 
 
@@ -74,6 +76,6 @@ def mesh_objects() -> list[bpy.types.Object]:
     """One object per mesh that has faces and belongs to this file, sorted by name."""
     one_per_mesh: dict[bpy.types.Mesh, bpy.types.Object] = {}
     for obj in sorted(bpy.data.objects, key=lambda obj: obj.name_full):
-        if obj.type == "MESH" and obj.data.is_editable and obj.data.polygons:
+        if obj.type == "MESH" and is_editable(obj) and obj.data.polygons:
             one_per_mesh.setdefault(obj.data, obj)
     return list(one_per_mesh.values())

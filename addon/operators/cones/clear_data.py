@@ -6,7 +6,9 @@ import bpy
 from ...core import identifiers
 from ...core.text import counted
 from ...mesh.clearing import clear_data
+from ...mesh.region_read import require_editable
 from ...mesh.targets import target_objects
+from ..shared.conclusion import conclude, for_each
 from ..shared.polling import poll_meshes
 from ..shared.properties import ConeGroupProperty
 
@@ -27,10 +29,14 @@ class MESH_OT_cone_clear_data(ConeGroupProperty, bpy.types.Operator):
         return poll_meshes(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = [obj for obj in target_objects(context) if obj.data.is_editable and obj.is_editable]
-        cleared = sum(clear_data(obj, self.vertex_group) for obj in objects)
-        if not cleared:
+        found, failures = for_each(target_objects(context), self._cleared)
+        count = sum(was_there for _, was_there in found)
+        if not count and not failures:
             self.report({"WARNING"}, "These meshes have no cone data; there is nothing to clear")
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"Cleared the cone data of {counted(cleared, 'mesh', 'meshes')}")
-        return {"FINISHED"}
+        done = [f"Cleared the cone data of {counted(count, 'mesh', 'meshes')}"] if count else []
+        return conclude(self, done, {}, failures)
+
+    def _cleared(self, obj: bpy.types.Object) -> bool:
+        """Whether there was any.  Raises Refused."""
+        require_editable(obj)
+        return clear_data(obj, self.vertex_group)

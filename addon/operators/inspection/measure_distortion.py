@@ -49,12 +49,18 @@ class UV_OT_cone_measure(ComputingOperator, bpy.types.Operator):
         return conclude(self, done, {}, failures)
 
     def _clear(self, objects: list[bpy.types.Object]) -> set[str]:
-        cleared = [obj for obj in objects if obj.data.is_editable and distortion.clear(obj.data)]
-        if not cleared:
+        found, failures = for_each(objects, _cleared)
+        count = sum(was_there for _, was_there in found)
+        if not count and not failures:
             self.report({"WARNING"}, "No distortion was measured on these meshes; there is nothing to clear")
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"Cleared the distortion of {counted(len(cleared), 'mesh', 'meshes')}")
-        return {"FINISHED"}
+        done = [f"Cleared the distortion of {counted(count, 'mesh', 'meshes')}"] if count else []
+        return conclude(self, done, {}, failures)
+
+
+def _cleared(obj: bpy.types.Object) -> bool:
+    """Whether there was any.  Raises Refused."""
+    require_editable(obj)
+    return distortion.clear(obj.data)
 
 
 def _measured(obj: bpy.types.Object) -> dict[str, NDArray[np.float32]]:

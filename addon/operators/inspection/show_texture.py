@@ -6,7 +6,9 @@ import bpy
 from ...core import identifiers
 from ...core.text import counted
 from ...mesh import reports, texture, texture_note
+from ...mesh.region_read import require_editable
 from ...mesh.targets import target_objects
+from ..shared.conclusion import conclude, for_each
 from ..shared.polling import poll_meshes
 
 PATTERNS = (
@@ -57,25 +59,21 @@ class UV_OT_cone_texture(bpy.types.Operator):
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = [obj for obj in target_objects(context) if obj.data.is_editable and obj.is_editable]
+        found, failures = for_each(target_objects(context), require_editable)
+        objects = [obj for obj, _ in found]
         if self.clear:
             changed = [obj for obj in objects if texture.remove(obj)]
             texture.remove_unused(context)
         else:
             changed = objects
-            material = texture.make_material(self.pattern, self.tiles)
-            for obj in objects:
-                texture.show(obj, material)
-            texture.show_in_view(context, material)
+            if objects:
+                material = texture.make_material(self.pattern, self.tiles)
+                for obj in objects:
+                    texture.show(obj, material)
+                texture.show_in_view(context, material)
         texture_note.update_note()
-        if not changed:
-            self.report(
-                {"WARNING"},
-                "These meshes do not show the texture; there is nothing to remove"
-                if self.clear
-                else "These meshes are linked from another file; make them local (Object > Relations)",
-            )
-            return {"CANCELLED"}
+        if not changed and not failures:
+            self.report({"WARNING"}, "These meshes do not show the texture; there is nothing to remove")
         verb = "Removed the texture from" if self.clear else "Showing the texture on"
-        self.report({"INFO"}, f"{verb} {counted(len(changed), 'mesh', 'meshes')}")
-        return {"FINISHED"}
+        done = [f"{verb} {counted(len(changed), 'mesh', 'meshes')}"] if changed else []
+        return conclude(self, done, {}, failures)

@@ -326,3 +326,71 @@ def edge_shares(obj, **options):
     """Lengths of the edges in the map by the mean one; with options, after unwrapping with them."""
     assert not options or bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
     return UvMap(obj).edge_shares()
+
+
+# What an artist's file can have that is Python: each of these writes the file that it names.
+TEXT = "import bpy, pathlib; pathlib.Path({path!r}).write_text('run')\n"
+HANDLER = (
+    "import bpy, pathlib\n"
+    "def handler(*_): pathlib.Path({path!r}).write_text('run')\n"
+    "bpy.app.handlers.save_pre.append(handler)\n"
+    "bpy.app.handlers.depsgraph_update_post.append(handler)\n"
+)
+# The call takes it beyond the simple expressions that Blender evaluates without Python.
+DRIVER = "[__import__('pathlib').Path({path!r}).write_text('run'), var][1]"
+
+
+def write_hostile(path, marks):
+    """A .blend with Python wherever Blender runs some: texts that are registered, drivers, a modifier of nodes."""
+    for name, code in (("startup.py", TEXT), ("handler.py", HANDLER)):
+        text = bpy.data.texts.new(name)
+        text.write(code.format(path=str(marks / name)))
+        text.use_module = True
+    cube = add_cone_cube("Driven", cuts=1)
+    cube["__init__"] = TEXT.format(path=str(marks / "property"))
+    cube.shape_key_add(name="Basis")
+    cube.shape_key_add(name="Key")
+    levels = cube.modifiers.new("Subdivision", "SUBSURF")
+    drive(cube, "location", marks / "location", 0)
+    drive(levels, "levels", marks / "levels")
+    drive(cube.data.shape_keys.key_blocks["Key"], "value", marks / "key")
+    bpy.context.preferences.filepaths.use_scripts_auto_execute = False
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+    clear()
+
+
+def drive(owner, name, mark, *index):
+    driver = owner.driver_add(name, *index).driver
+    variable = driver.variables.new()
+    variable.name = "var"
+    variable.targets[0].id = bpy.data.objects["Driven"]
+    variable.targets[0].data_path = "scale.x"
+    driver.expression = DRIVER.format(path=str(mark))
+
+
+def test_files_run_no_python_whatever_the_preferences_say(tmp_path):
+    marks, source, out = tmp_path / "marks", tmp_path / "source", tmp_path / "out"
+    marks.mkdir(), source.mkdir()
+    names = ["first.blend", "second.blend"]
+    for name in names:
+        write_hostile(source / name, marks)
+    write_glb(source / "between.glb", add_sphere().data)
+    clear()
+    assert not list(marks.iterdir())
+    (source / "list.txt").write_text("first.blend\nbetween.glb\nsecond.blend\n")
+    filepaths = bpy.context.preferences.filepaths
+    filepaths.use_scripts_auto_execute = True
+    bpy.ops.wm.save_userpref()
+    try:
+        code = run(source / "list.txt", "--out", out, "--jobs", 1, "--preset", "paint", "--no-pictures")
+    finally:
+        filepaths.use_scripts_auto_execute = False
+        bpy.ops.wm.save_userpref()
+    assert [(line["status"], line["code"]) for line in lines_of(out)] == [("ok", None)] * 3, lines_of(out)
+    assert code == 0
+    assert list(marks.iterdir()) == []
+    # The file is not hostile in vain: opened with its scripts, it runs all of them.
+    bpy.ops.wm.open_mainfile(filepath=str(source / "first.blend"), use_scripts=True)
+    bpy.context.view_layer.update()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True)
+    assert {mark.name for mark in marks.iterdir()} >= {"startup.py", "handler.py", "location", "levels", "key"}

@@ -10,12 +10,11 @@ from unittest.mock import MagicMock
 import bpy
 import numpy as np
 import pytest
-from installed import EXTENSION, addon
+from installed import addon
+from operator_runs import KINDS
 from scenes import UvMap, add_cone_cube, add_cube, add_object, changed, edit, snapshot
 
-OPERATORS = sorted(
-    kind.bl_idname for kind in bpy.types.Operator.__subclasses__() if kind.__module__.startswith(f"{EXTENSION}.")
-)
+OPERATORS = [kind.bl_idname for kind in KINDS]
 PANELS = [kind for kind in addon.registration.CLASSES if issubclass(kind, bpy.types.Panel)]
 # Their poll has no message, as no menu shows them.
 UNSEEN = {"uv.cone_wait_for_redo"}
