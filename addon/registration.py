@@ -6,6 +6,7 @@ import bpy
 from .core.choices import ConeUnwrapPresetDefaults
 from .jobs.batch import command
 from .jobs.layouts import remembered
+from .jobs.tasks import computation
 from .mesh import changes, distortion, reports, texel_settings, texture
 from .operators.angles.preview_stretch import MESH_OT_cone_preview
 from .operators.angles.select_row import MESH_OT_cone_select_one
@@ -28,7 +29,7 @@ from .operators.inspection.measure_distortion import UV_OT_cone_measure
 from .operators.inspection.select_reported import MESH_OT_cone_select_reported
 from .operators.inspection.show_texture import UV_OT_cone_texture
 from .operators.quads.remesh import OBJECT_OT_cone_remesh_to_quads
-from .operators.shared import redo
+from .operators.shared import redo, running
 from .operators.texels.get_density import UV_OT_cone_texel_get
 from .operators.texels.select_by_density import MESH_OT_cone_texel_select
 from .operators.texels.set_density import UV_OT_cone_texel_set
@@ -92,8 +93,10 @@ def register() -> None:
 
 
 def unregister() -> None:
+    running.end_all(bpy.context)
     menus.remove()
     for module in reversed(MODULES):
         module.unregister()
+    computation.end_all()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import replace
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -25,6 +26,8 @@ MOST_TRIANGLES = 300_000
 """Limit of all cached maps together, about a hundred megabytes."""
 
 _kept: OrderedDict[bytes, Unwrapped] = OrderedDict()
+# Objects that are unwrapped side by side, each in a thread, share them.
+_lock = Lock()
 
 
 def unwrap_all_once(tasks: Sequence[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
@@ -34,10 +37,14 @@ def unwrap_all_once(tasks: Sequence[UnwrapTask], progress: Progress | None = Non
 
 def _unwrap_once(task: UnwrapTask, progress: Progress | None) -> Unwrapped:
     key = digest(task)
-    found = _kept.pop(key, None) or unwrap(task, progress)
-    _kept[key] = found
-    while sum(len(kept.region.surface.triangles) for kept in _kept.values()) > MOST_TRIANGLES:
-        _kept.popitem(last=False)
+    with _lock:
+        found = _kept.pop(key, None)
+    if found is None:
+        found = unwrap(task, progress)
+    with _lock:
+        _kept[key] = found
+        while sum(len(kept.region.surface.triangles) for kept in _kept.values()) > MOST_TRIANGLES:
+            _kept.popitem(last=False)
     return replace(found, region=task.region)
 
 
@@ -54,7 +61,8 @@ def digest(task: UnwrapTask) -> bytes:
 @bpy.app.handlers.persistent
 def forget(*_: Any) -> None:
     """Called by Blender when another file is opened."""
-    _kept.clear()
+    with _lock:
+        _kept.clear()
     packing.forget()
 
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
+from weakref import WeakSet
 
 T = TypeVar("T")
+
+_begun: WeakSet[Computation[Any]] = WeakSet()
 
 
 class Computation(Generic[T]):
@@ -24,6 +27,7 @@ class Computation(Generic[T]):
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._run, args=(compute,), name="Cone Unwrap")
         self._thread.start()
+        _begun.add(self)
 
     def stop(self) -> None:
         """Ask it to stop, which it does when it next reports progress.  Its outcome must not be used any more."""
@@ -54,3 +58,12 @@ class Computation(Generic[T]):
     def _progress(self, done: float) -> bool:
         self.done = done
         return not self._stopped
+
+
+def end_all() -> None:
+    """Stop all computations and wait for their ends, as the library may be removed or replaced next."""
+    begun = list(_begun)
+    for computation in begun:
+        computation.stop()
+    for computation in begun:
+        computation.finished(None)

@@ -17,7 +17,7 @@ from ...jobs.tasks.computation import Computation
 from ...jobs.tasks.solving import Progress, Task
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.targets import Target, selects_by_uv, target, target_objects
-from . import redo
+from . import redo, running
 from .conclusion import conclude, for_each
 from .polling import ComputingOperator
 from .progress import ShownProgress
@@ -87,6 +87,7 @@ class BackgroundOperator(ComputingOperator):
             return self._conclude_work(self._work)
         self._shown = ShownProgress(context, self.activity, self._work.computation)
         context.window_manager.modal_handler_add(self)
+        running.began(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -96,7 +97,7 @@ class BackgroundOperator(ComputingOperator):
             return {"CANCELLED"}
         if event.type == "TIMER":
             if self._work.computation.finished():
-                self._shown.end(context)
+                self._end(context)
                 return self._conclude_work(self._work)
             self._shown.update(context)
         return {"RUNNING_MODAL"}
@@ -104,7 +105,11 @@ class BackgroundOperator(ComputingOperator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Also called by Blender where it ends the operator, for example before another file is opened."""
         self._work.computation.stop()
+        self._end(context)
+
+    def _end(self, context: bpy.types.Context) -> None:
         self._shown.end(context)
+        running.ended(self)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if redo.is_redone(self):

@@ -47,7 +47,9 @@ def _settings(space: bpy.types.Space) -> tuple[str, ...]:
     if space.type == "VIEW_3D":
         return "show_gizmo_tool", "show_gizmo_context"
     # UV editors have one for all, navigation included.
-    tool = bpy.context.workspace.tools.from_space_image_mode("UV")
+    # Files are also saved without a window, as from Blender's timers.
+    window = bpy.context.window or bpy.context.window_manager.windows[0]
+    tool = window.workspace.tools.from_space_image_mode("UV")
     return ("show_gizmo",) if tool is not None and tool.widget else ()
 
 

@@ -7,11 +7,12 @@ from typing import Any
 
 import bpy
 
+from . import running
 from .cursor import Cursor
 from .gizmos import HiddenGizmos
 from .polling import poll_computation, poll_edit_mesh
 from .redo import last_operator
-from .status_bar import Hint, status
+from .status_bar import Hint, clear_status, status
 from .views import shows_meshes, view_areas
 
 INTERVAL = 1 / 60
@@ -49,6 +50,7 @@ class ModalEdit:
         self._gizmos = HiddenGizmos()
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
+        running.began(self)
         self._draw(self._objects.begun)
         return {"RUNNING_MODAL"}
 
@@ -133,9 +135,8 @@ class ModalEdit:
     def _end(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
         self._gizmos.end()
-        for workspace in bpy.data.workspaces:
-            with context.temp_override(workspace=workspace):
-                workspace.status_text_set(None)
+        clear_status(context)
         for area in view_areas():
             area.header_text_set(None)
         self._objects.end()
+        running.ended(self)

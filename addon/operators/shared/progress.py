@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .status_bar import clear_status
+
 if TYPE_CHECKING:
     from ...jobs.tasks.computation import Computation
 
@@ -36,4 +38,4 @@ class ShownProgress:
     def end(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
+        clear_status(context)

@@ -166,6 +166,9 @@ def register() -> None:
 
 def unregister() -> None:
     bpy.app.handlers.undo_post.remove(_notice_undo)
+    if bpy.app.timers.is_registered(_forget_undo):
+        bpy.app.timers.unregister(_forget_undo)
+    _forget_undo()
     _stop()
     _finished.clear()
     bpy.utils.unregister_class(UV_OT_cone_wait_for_redo)

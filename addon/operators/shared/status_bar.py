@@ -35,6 +35,13 @@ def with_steps(always: Sequence[Hint], undoes: str | None, redoes: str | None) -
     return [*always, *steps, *ENDING]
 
 
+def clear_status(context: bpy.types.Context) -> None:
+    """Let the status bar be Blender's again, also where the context has no window."""
+    for workspace in bpy.data.workspaces:
+        with context.temp_override(workspace=workspace):
+            workspace.status_text_set(None)
+
+
 def status(shown: Sequence[Hint]) -> str | Callable[[bpy.types.Header, bpy.types.Context], None]:
     """The hints as `WorkSpace.status_text_set` takes them."""
     known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The latest maps are cached, and anything that affects a map invalidates its entry."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from types import SimpleNamespace
+
 import bmesh
 import bpy
 import numpy as np
@@ -150,3 +155,29 @@ def test_a_layout_is_not_packed_again_either(monkeypatch):
     # None where the extension has no packer of its own.
     assert len(calls) in {0, 2}
     assert np.array_equal(layouts[0], layouts[2]) and not np.array_equal(layouts[0], layouts[1])
+
+
+@dataclass(frozen=True)
+class Made:
+    """What `remembered` takes for a task, and for its map."""
+
+    number: int
+    region: object
+
+
+def test_maps_are_remembered_from_several_threads(monkeypatch):
+    most = 50
+    region = SimpleNamespace(surface=SimpleNamespace(triangles=range(remembered.MOST_TRIANGLES // most)))
+    monkeypatch.setattr(remembered, "digest", lambda task: task.number)
+    monkeypatch.setattr(remembered, "unwrap", lambda task, progress: task)
+    remembered.forget()
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            found = list(pool.map(lambda number: remembered._unwrap_once(Made(number, region), None), range(4000)))
+    finally:
+        sys.setswitchinterval(interval)
+    assert [made.number for made in found] == list(range(4000))
+    assert len(remembered._kept) == most
+    remembered.forget()
