@@ -62,8 +62,11 @@ class LayoutSearch:
     turned, and then the chosen one is packed with any turns, of which quarters are tried first.
     """
 
-    def __init__(self, islands: Islands, square: Square) -> None:
+    def __init__(self, islands: Islands, square: Square, island_count: int | None = None) -> None:
+        """island_count: of all squares together, if these are those of one of several; the more there are, the fewer
+        turns are tried in each."""
         self.islands, self._square = islands, square
+        self._all_islands = island_count or islands.count
         self._packer = Packer(islands, square)
         # The best layout, its turns, and where the random numbers stand.
         self._by_quarters: tuple[Layout, ComplexArray, Any] | None = None
@@ -75,7 +78,8 @@ class LayoutSearch:
             that leaves most of the square empty.
         """
         count = self.islands.count
-        middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
+        sharing = max(self._all_islands, _ISLANDS_OF_ALL_TRIES)
+        middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // sharing) for tries in _TRIES)
         tries = middle if may_turn else 1
         if may_turn is True:
             is_aligned, sides = lie_along_axes(self.islands), sides_when_turned(self.islands)

@@ -164,6 +164,7 @@ class _Search:
         """uv: (m, 3, 2). number: (m,), the island of each triangle. margin: of a tile's side."""
         self.margin = margin
         self._uv, self._number, self._may_turn, self._progress = uv, number, may_turn, progress
+        self._island_count = int(number.max()) + 1
         self._told = 0.0
 
     def filled(self, wanted: NDArray[np.bool_]) -> _Tile:
@@ -174,7 +175,7 @@ class _Search:
         """The same with another margin."""
         inside = wanted[self._number]
         islands = islands_of(self._uv[inside], self._number[inside])
-        tile = _Tile(islands, LayoutSearch(islands, square).best(self._may_turn, self._tell))
+        tile = _Tile(islands, LayoutSearch(islands, square, self._island_count).best(self._may_turn, self._tell))
         self._told += (1 - self._told) * _SHARE
         return tile
 

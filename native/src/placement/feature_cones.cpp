@@ -15,7 +15,8 @@ namespace {
 
 constexpr double quarter = M_PI / 2;
 constexpr double ambiguous = 15 * M_PI / 180;  // from a multiple of quarter turns: others may be chosen beyond
-constexpr Index most_candidates = 200;         // examined at once
+constexpr Index most_candidates = 200;         // examined at once, each with its effect on all vertices
+constexpr Index most_on_border = 400;          // examined at once where only the boundary is left
 constexpr int most_refinements = 4;            // of the places of cones
 constexpr Index most_curvature = 2;            // of a cone inside, in quarter turns
 constexpr Index widest = 4;                    // angle at the boundary
@@ -50,9 +51,7 @@ class PatchRounding {
     if (missing_ == 0) return true;
     const Array<Index> candidates = all_candidates();
     const std::ptrdiff_t stride = (ssize(candidates) + most_candidates - 1) / most_candidates;
-    Array<Index> some;
-    for (std::ptrdiff_t i = 0; i < ssize(candidates); i += stride) some.push_back(candidates[i]);
-    if (!choose(some)) return choose(border());  // a fan with a single vertex inside
+    if (!choose(every(stride, 0, candidates))) return choose_on_border();  // a fan with a single vertex inside
     for (int refinement = 0; refinement < most_refinements && stride > 1; ++refinement) choose(near_cones());
     return true;
   }
@@ -87,10 +86,21 @@ class PatchRounding {
     return out;
   }
 
-  Array<Index> border() const {
+  static Array<Index> every(std::ptrdiff_t stride, std::ptrdiff_t begin, const Array<Index>& of) {
     Array<Index> out;
-    for (const Array<Index>& loop : mesh_.boundary_loops) out.insert(out.end(), loop.begin(), loop.end());
+    for (std::ptrdiff_t i = begin; i < ssize(of); i += stride) out.push_back(of[i]);
     return out;
+  }
+
+  // Among some vertices of the boundary, evenly spread, and among others if these cannot take up all.
+  bool choose_on_border() {
+    Array<Index> border;
+    for (const Array<Index>& loop : mesh_.boundary_loops) border.insert(border.end(), loop.begin(), loop.end());
+    const std::ptrdiff_t stride = (ssize(border) + most_on_border - 1) / most_on_border;
+    for (std::ptrdiff_t begin = 0; begin < stride; ++begin) {
+      if (choose(every(stride, begin, border))) return true;
+    }
+    return false;
   }
 
   Array<Index> near_cones() const {

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -128,6 +129,17 @@ def test_open_components_without_features_get_no_cones_for_them() -> None:
     cones = lsgp._lsgp.feature_cones(surface_arrays(surface(meshes.merge([box, cup]))), True, None)[0]
     assert sorted(cones) == sorted(lsgp._lsgp.feature_cones(surface_arrays(surface(box)), True, None)[0])
     assert len(cones) == 8
+
+
+def test_corners_of_caps_with_thousands_of_sides_are_chosen_among_some() -> None:
+    """Each candidate is a right-hand side, and has a product with every other one."""
+    sides = 4000
+    given = surface(closed.prism(sides, 1, 2))
+    begin = time.process_time()
+    cones, angles = lsgp._lsgp.feature_cones(surface_arrays(given), True, None)
+    assert time.process_time() - begin < 8
+    assert (2 * np.pi - angles).sum() == pytest.approx(4 * np.pi)
+    assert np.unique(cones).size == len(cones) <= 8
 
 
 @pytest.mark.parametrize("mesh", [closed.noise_sphere(1, 0.25, 1), closed.noise_sphere(2, 0.15, 1)])
