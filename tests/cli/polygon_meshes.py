@@ -169,3 +169,17 @@ def polygon_areas(mesh: PolygonMesh) -> np.ndarray:
         points = points - points[0]
         areas.append(np.linalg.norm(np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)) / 2)
     return np.array(areas)
+
+
+def stl_files(positions: np.ndarray, triangles: np.ndarray) -> dict[str, bytes]:
+    """Triangles, (m, 3), as a binary file and as text."""
+    corners = positions[triangles].astype("<f4")
+    facets = b"".join(bytes(12) + corner.tobytes() + bytes(2) for corner in corners)
+    lines = ["solid ball"]
+    for corner in corners.tolist():
+        places = [f"vertex {x!r} {y!r} {z!r}" for x, y, z in corner]
+        lines += ["facet normal 0 0 0", "outer loop", *places, "endloop", "endfacet"]
+    return {
+        "binary": bytes(80) + struct.pack("<I", len(corners)) + facets,
+        "text": "\n".join([*lines, "endsolid ball", ""]).encode(),
+    }

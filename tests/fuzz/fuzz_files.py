@@ -3,13 +3,15 @@
 
 The first byte chooses the command, the second its options and the suffix of the mesh; the files follow, with SEPARATOR
 between them. Every command must end with an exit code of its own and without a traceback, and what it wrote must be
-read back as the same mesh. tools/fuzz runs this, and replays what it found.
+read back as the same mesh. Half of the inputs are made by changing single fields of files (`file_mutations`).
+tools/fuzz runs this, and replays what it found.
 """
 
 from __future__ import annotations
 
 import contextlib
 import io
+import random
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -25,9 +27,10 @@ with atheris.instrument_imports(include=["lsgp"]):
     from lsgp.io.mesh_files import read_mesh
 
 import numpy as np
+from file_mutations import mutated
 
 SEPARATOR = b"\n%%\n"
-SUFFIXES = [".obj", ".ply", ".off", ""]
+SUFFIXES = [".obj", ".ply", ".off", "", ".gltf", ".glb", ".stl"]
 
 # What beside the mesh is given to `unwrap`, and how.
 OPTIONS = [
@@ -114,7 +117,20 @@ def one_input(raw: bytes) -> None:
         COMMANDS[raw[0] % len(COMMANDS)](folder, raw[1], mesh)
 
 
+def mutation(raw: bytes, most: int, seed: int) -> bytes:
+    """Another input: by the fields of one of its files, or by Atheris."""
+    rng = random.Random(seed)
+    if len(raw) > 2 and rng.random() < 0.5:
+        files = raw[2:].split(SEPARATOR)
+        chosen = rng.choice([0, rng.randrange(len(files))])
+        files[chosen] = mutated(files[chosen], rng)
+        changed = raw[:2] + SEPARATOR.join(files)
+        if len(changed) <= most:
+            return changed
+    return atheris.Mutate(raw, most)
+
+
 if __name__ == "__main__":
     np.seterr(all="ignore")
-    atheris.Setup(sys.argv, one_input)
+    atheris.Setup(sys.argv, one_input, custom_mutator=mutation)
     atheris.Fuzz()

@@ -6,18 +6,21 @@ python tests/fuzz/seeds.py FOLDER      into FOLDER/surface, FOLDER/arrays and FO
 
 from __future__ import annotations
 
+import base64
+import json
 import random
 import struct
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 VERBS = 8  # of fuzz_surface and fuzz_arrays
 SHAPES = 6  # of fuzz_surface
 OPTIONS = 8  # of fuzz_files
 SEPARATOR = b"\n%%\n"
 UNWRAP, MEASURE, CONES, BATCH = 0, 2, 4, 5  # commands of fuzz_files
-OBJ, PLY, OFF, NONE = range(4)  # suffixes of fuzz_files
+OBJ, PLY, OFF, NONE, GLTF, GLB, STL = range(7)  # suffixes of fuzz_files
 
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -70,6 +73,74 @@ def ply(form: str, per_vertex: str = "") -> bytes:
     return header + points + b"".join(struct.pack(order + "B4i", 4, *side) for side in SIDES)
 
 
+def gltf(*, binary: bool) -> bytes:
+    """Two primitives of a cube, one without indices, below a node that moves them, with what else meshes have."""
+    triangles = [half for a, b, c, d in SIDES for half in ((a, b, c), (a, c, d))]
+    views = [
+        b"".join(struct.pack("<3f", *point) for point in CUBE),
+        b"".join(struct.pack("<3H", *triangle) for triangle in triangles[:10]),
+        b"".join(struct.pack("<3hH", *CUBE[vertex], 0) for triangle in triangles[10:] for vertex in triangle),
+        bytes(4 * len(CUBE)),
+    ]
+    data = b"".join(views)
+    begins = [sum(map(len, views[:i])) for i in range(len(views))]
+    buffer: dict[str, Any] = {"byteLength": len(data)}
+    if not binary:
+        buffer["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    content = {
+        "asset": {"version": "2.0"},
+        "buffers": [buffer],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": b, "byteLength": len(v)} for b, v in zip(begins, views, strict=True)
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+            {"bufferView": 1, "componentType": 5123, "count": 30, "type": "SCALAR"},
+            {"bufferView": 2, "componentType": 5122, "count": 6, "type": "VEC3", "normalized": False},
+            {"bufferView": 3, "componentType": 5121, "count": 8, "type": "VEC4", "normalized": True},
+            {"bufferView": 3, "componentType": 5121, "count": 8, "type": "VEC2", "normalized": True},
+            {"componentType": 5126, "count": 8, "type": "VEC3"},
+        ],
+        "meshes": [
+            {
+                "primitives": [
+                    {
+                        "attributes": {"POSITION": 0, "COLOR_0": 3, "TEXCOORD_0": 4},
+                        "indices": 1,
+                        "targets": [{"POSITION": 5}],
+                        "extras": {"kept": [1, "a"]},
+                    },
+                    {"attributes": {"POSITION": 2}},
+                ]
+            }
+        ],
+        "nodes": [
+            {"children": [1], "scale": [2, 1, 1]},
+            {"mesh": 0, "rotation": [0, 0, 0, 1], "translation": [1, 2, 3]},
+        ],
+        "images": [{"uri": "mesh.png"}],
+    }
+    content["bufferViews"][2]["byteStride"] = 8
+    text = json.dumps(content, separators=(",", ":")).encode()
+    if not binary:
+        return text
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(data), 0x004E4942) + data
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
+def stl(*, binary: bool) -> bytes:
+    triangles = [[CUBE[v] for v in half] for a, b, c, d in SIDES for half in ((a, b, c), (a, c, d))]
+    if binary:
+        facets = b"".join(bytes(12) + struct.pack("<9f", *sum(corners, ())) + bytes(2) for corners in triangles)
+        return bytes(80) + struct.pack("<I", len(triangles)) + facets
+    lines = ["solid a cube"]
+    for corners in triangles:
+        loop = ["vertex " + " ".join(map(str, point)) for point in corners]
+        lines += ["facet normal 0 0 0", "outer loop", *loop, "endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid"]).encode()
+
+
 def meshes() -> Iterator[tuple[int, bytes]]:
     yield OBJ, obj(SIDES)
     yield OBJ, obj(SIDES[:5])
@@ -81,6 +152,10 @@ def meshes() -> Iterator[tuple[int, bytes]]:
     for form in ("ascii", "binary_little_endian", "binary_big_endian"):
         yield PLY, ply(form)
         yield NONE, ply(form, "property uchar red\n")
+    yield GLTF, gltf(binary=False)
+    yield GLB, gltf(binary=True)
+    yield STL, stl(binary=False)
+    yield STL, stl(binary=True)
 
 
 def files() -> Iterator[bytes]:

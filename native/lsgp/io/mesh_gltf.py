@@ -130,7 +130,12 @@ def _put_uv(document: Document, corner_uv: NDArray[np.float64]) -> tuple[int, in
 def new_gltf(
     positions: NDArray[np.float64], triangles: NDArray[np.int32], corner_uv: NDArray[np.float64], *, binary: bool
 ) -> tuple[bytes, tuple[Finding, ...]]:
-    """A document of one mesh.  triangles: (m, 3). corner_uv: (m, 3, 2), NaN where there is none."""
+    """A document of one mesh.  triangles: (m, 3). corner_uv: (m, 3, 2), NaN where there is none.
+
+    Raises InputError: EMPTY_MESH, WRONG_PARAMETER.
+    """
+    if not len(triangles):
+        raise InputError("EMPTY_MESH", "glTF cannot hold a mesh without triangles. Give one with some.")
     missing = int(np.isnan(corner_uv).any(axis=(1, 2)).sum())
     solved = np.where(np.isnan(corner_uv).any(axis=(1, 2))[:, None, None], 0.0, corner_uv)
     vt, index = index_corners(triangles.ravel(), _flipped(solved.reshape(-1, 2)))
@@ -244,7 +249,7 @@ def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _placed(points: NDArray[np.float64], transform: NDArray[np.float64]) -> NDArray[np.float64]:
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         placed = points @ transform[:3, :3].T + transform[:3, 3]
         if np.linalg.det(transform[:3, :3]) < 0:
             placed[:, 0] *= -1  # the triangles are to turn as they do in the mesh

@@ -95,9 +95,9 @@ class TextTables:
 
 def read_text_tables(data: bytes) -> TextTables | None:
     """All rows of a text file that `read_ply` accepts; None of a binary one, and where a list is not as long in all
-    rows, an integer is none of its type, or an element has no properties."""
+    rows, an integer is none of its type, an element has no properties, or the name of one is not in ASCII."""
     elements, byte_order, begin, line = _read_header(data)
-    if byte_order:
+    if byte_order or not all(p.name.isascii() for element in elements for p in element.properties):
         return None
     text = _TextTable(data[begin:], line)
     tables = []

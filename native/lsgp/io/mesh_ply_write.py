@@ -20,6 +20,7 @@ from ..errors import Finding
 from ..indexed_uv import index_corners
 from .mesh_gltf import unsolved_at_origin
 from .mesh_ply import CORNER_LISTS, read_text_tables, structured
+from .mesh_text import malformed, quoted
 from .polygons import PolygonMesh
 
 if TYPE_CHECKING:
@@ -40,11 +41,12 @@ def format_ply(
     text or binary then stay. A vertex with several coordinates is split: the vertex stays where it is, with its first
     ones, and those with the others come after all of the file's, so that what refers to vertices does not change.
     A polygon with a NaN keeps its old coordinates; where it has none, they are 0.
-    Takes plyfile.
+    Takes plyfile.  Raises InputError: MALFORMED_FILE where that does not read the source, as it reads more of it than
+    `read_ply`.
     """
     from plyfile import PlyData
 
-    ply = _bare(mesh) if source is None else _read(source, mesh)
+    ply = _bare(mesh) if source is None else _read_as_it_is(source, mesh)
     corner_uv, missing = _with_old(ply["vertex"].data, mesh, corner_uv)
     vertex, uv, corners = _split(mesh, corner_uv)
     elements = []
@@ -57,6 +59,16 @@ def format_ply(
     # In another byte order than the machine's, plyfile 1.1 writes single values beside lists wrongly.
     data = _content(PlyData(elements, ply.text, "=", ply.comments, ply.obj_info))
     return data, (unsolved_at_origin(missing, "PLY"),) if missing else ()
+
+
+def _read_as_it_is(source: bytes, mesh: PolygonMesh) -> PlyData:
+    """All of the file.  Raises InputError."""
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _read(source, mesh)
+    except Exception as error:  # of many kinds: its own, and those of numpy for numbers that do not fit their types
+        problem = quoted(str(error).encode("utf-8", "surrogatepass"), most=120)
+        raise malformed(f"plyfile, by which PLY is written, does not read the file: {problem}. Write OBJ.") from error
 
 
 def _read(source: bytes, mesh: PolygonMesh) -> PlyData:

@@ -22,9 +22,9 @@ def malformed(problem: str, line: int | None = None) -> InputError:
     return InputError("MALFORMED_FILE", f"{where}{problem} Export the file again.")
 
 
-def quoted(token: bytes) -> str:
+def quoted(token: bytes, most: int = 40) -> str:
     """A token of a file for a message: short, printable."""
-    text = token[:40].decode("ascii", "backslashreplace")
+    text = token[:most].decode("ascii", "backslashreplace")
     return "'" + "".join(c if c.isprintable() else "?" for c in text) + "'"
 
 

@@ -18,7 +18,7 @@ from lsgp.io.mesh_formats import formats_table
 from lsgp.io.mesh_ply import read_ply
 from lsgp.io.mesh_stl import read_stl
 from lsgp.io.welding import weld
-from polygon_meshes import PLY_FORMS, bumpy_ball, cube, faces_of, obj_text, off_text, patch, ply_bytes
+from polygon_meshes import PLY_FORMS, bumpy_ball, cube, faces_of, obj_text, off_text, patch, ply_bytes, stl_files
 
 
 def split_uv(file) -> np.ndarray:
@@ -56,6 +56,27 @@ def test_a_ply_keeps_polygons_properties_and_what_refers_to_vertices(tmp_path: P
     assert (again.sizes == file.mesh.sizes).all()
     stored = np.stack([new["vertex"]["s"], new["vertex"]["t"]], axis=1)[again.corners]
     assert (stored == file.triangulation.to_polygon_corners(uv, len(again.corners))).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b"comment made for a test", b"made for a test"),
+        (b"property int flags", b"property int fl\xe4gs"),
+        (b"\n-1 ", b"\n99999999999 "),
+        (b"ascii 1.0", b"ascii 2.0"),
+    ],
+)
+def test_a_ply_that_its_writer_does_not_read_is_refused(tmp_path: Path, old: bytes, new: bytes) -> None:
+    pytest.importorskip("plyfile")
+    for made in (patch, lambda: cube(2)):
+        data = ply_bytes(*made(), extras=True)
+        assert old in data
+        (tmp_path / "in.ply").write_bytes(data.replace(old, new))
+        file = read_mesh_file(tmp_path / "in.ply")
+        with pytest.raises(InputError, match=r"plyfile.*Write OBJ") as caught:
+            write_mesh_file(tmp_path / "out.ply", file, split_uv(file))
+        assert caught.value.code == "MALFORMED_FILE" and not (tmp_path / "out.ply").exists()
 
 
 def test_a_text_ply_of_equal_polygons_keeps_its_numbers_in_few_digits(tmp_path: Path) -> None:
@@ -192,19 +213,6 @@ TETRAHEDRON = (
     np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
     np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]),
 )
-
-
-def stl_files(positions: np.ndarray, triangles: np.ndarray) -> dict[str, bytes]:
-    corners = positions[triangles].astype("<f4")
-    facets = b"".join(bytes(12) + corner.tobytes() + bytes(2) for corner in corners)
-    lines = ["solid ball"]
-    for corner in corners.tolist():
-        places = [f"vertex {x!r} {y!r} {z!r}" for x, y, z in corner]
-        lines += ["facet normal 0 0 0", "outer loop", *places, "endloop", "endfacet"]
-    return {
-        "binary": bytes(80) + struct.pack("<I", len(corners)) + facets,
-        "text": "\n".join([*lines, "endsolid ball", ""]).encode(),
-    }
 
 
 @pytest.mark.parametrize("kind", ["binary", "text"])

@@ -9,81 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gltf_files import Builder, content_of, corners_of, values_of
+from gltf_files import Builder, content_of, corners_of, scene, soup, values_of
 from lsgp.errors import InputError
 from lsgp.io import gltf_document, mesh_gltf
 from lsgp.io.mesh_files import read_mesh_file, write_mesh_file
 from polygon_meshes import bumpy_ball, obj_text
-
-QUARTER_TURN = [0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5)]
-
-
-def soup(n: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places of the corners of a closed surface's triangles, each repeated as for flat shading; normals; triangles."""
-    positions, faces = bumpy_ball(n)
-    triangles = np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))])
-    corners = positions[triangles].astype(np.float32)
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    return corners, np.repeat(normal[:, None], 3, axis=1).astype(np.float32), triangles
-
-
-def scene(*, with_uv: bool = False) -> Builder:
-    """Two meshes, the first of two primitives with materials, under nodes that turn, scale, move and mirror it; with an
-    animation, a camera, colors, a morph target, extensions, and keys of no version of the format."""
-    corners, normals, _ = soup()
-    half = len(corners) // 2
-    b = Builder()
-    primitives = []
-    for part in (slice(None, half), slice(half, None)):
-        points = corners[part].reshape(-1, 3)
-        attributes = {
-            "POSITION": b.add(points, min=points.min(axis=0).tolist(), max=points.max(axis=0).tolist()),
-            "NORMAL": b.add(normals[part].reshape(-1, 3)),
-            "COLOR_0": b.add(np.arange(4 * len(points), dtype=np.uint8).reshape(-1, 4), normalized=True),
-            "TANGENT": b.add(np.ones((len(points), 4), np.float32)),
-        }
-        if with_uv:
-            attributes["TEXCOORD_0"] = b.add(np.full((len(points), 2), 0.25, np.float32))
-        attributes["TEXCOORD_1"] = b.add(np.arange(2.0 * len(points), dtype=np.float32).reshape(-1, 2))
-        primitives.append(
-            {
-                "attributes": attributes,
-                "material": len(primitives),
-                "targets": [{"POSITION": b.add(points * 2, min=[0] * 3, max=[1] * 3)}],
-                "extras": {"part": len(primitives)},
-            }
-        )
-    shared = b.add(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4"), min=[0, 0, 0], max=[1, 1, 0])
-    quad = [
-        {"attributes": {"POSITION": shared}, "indices": b.add(np.array(indices, "<u2"))}
-        for indices in ([0, 1, 2], [0, 2, 3])
-    ]
-    lines = {"mode": 1, "attributes": {"POSITION": shared}}
-    b.content |= {
-        "scene": 0,
-        "scenes": [{"nodes": [0, 2]}],
-        "nodes": [
-            {"children": [1], "rotation": QUARTER_TURN, "scale": [2, 3, 4], "name": "würfel 立"},
-            {"mesh": 0, "translation": [5, 0, 0]},
-            {"mesh": 1, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]},
-        ],
-        "meshes": [{"name": "ball", "primitives": primitives}, {"primitives": [*quad, lines]}],
-        "materials": [{"name": "a", "extensions": {"KHR_materials_unlit": {}}}, {"name": "b"}],
-        "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}],
-        "animations": [
-            {
-                "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
-                "samplers": [
-                    {"input": b.add(np.array([0.0, 1.0], "<f4")), "output": b.add(np.ones((2, 3), np.float32))}
-                ],
-            }
-        ],
-        "extensionsUsed": ["KHR_materials_unlit"],
-        "extras": {"kept": [None, 1.5, "ü"]},
-        "later": {"than": "version 2"},
-    }
-    return b
 
 
 def in_file(folder: Path, data: bytes, name: str) -> Path:
@@ -488,6 +418,13 @@ def test_a_compressed_form_of_data_that_changes_is_taken_out(tmp_path: Path) -> 
     write_mesh_file(tmp_path / "out.glb", file, some_uv(len(file.triangulation.triangles)))
     (after, _) = content_of((tmp_path / "out.glb").read_bytes())
     assert after["meshes"][0]["primitives"][0]["extensions"] == {"other": {}}
+
+
+def test_a_mesh_without_triangles_is_no_gltf(tmp_path: Path) -> None:
+    file = read_mesh_file(in_file(tmp_path, b"v 0 0 0\n", "in.obj"))
+    with pytest.raises(InputError) as caught:
+        write_mesh_file(tmp_path / "out.glb", file, np.empty((0, 3, 2)))
+    assert caught.value.code == "EMPTY_MESH"
 
 
 def test_numbers_beyond_single_precision_are_no_gltf(tmp_path: Path, lsgp) -> None:

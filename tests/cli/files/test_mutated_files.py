@@ -2,6 +2,7 @@
 """Files of all kinds with random damage, through the commands: each ends with a documented exit code and a reason.
 
 Damage goes from single bits to lines and numbers that are put in, left out, doubled and exchanged; a seed names it.
+`file_mutations` changes single fields of files that stay whole otherwise.
 """
 
 from __future__ import annotations
@@ -15,12 +16,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from file_mutations import mutated as with_other_fields
+from gltf_files import content_of, scene
 from lsgp.cli import main
-from lsgp.io.mesh_files import read_mesh
-from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text, off_text, patch, ply_bytes
+from lsgp.errors import InputError
+from lsgp.io.mesh_files import read_mesh, read_mesh_file, write_mesh_file
+from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text, off_text, patch, ply_bytes, stl_files
 
 RESULT, USAGE, REFUSED = 0, 2, 3
-SEEDS = 60
+SEEDS, MANY_SEEDS = 60, 100
+# What reading and writing may end with.
+REFUSALS = {"MALFORMED_FILE", "INDEX_OUT_OF_RANGE", "BAD_FACE", "WRONG_PARAMETER", "EMPTY_MESH"}
 
 BALL, BALL_CONES = bumpy_ball(3), cube_corners(cube(3)[0])
 WITH_UV = "".join(f"vt {i % 5} {i // 5}\n" for i in range(25)) + "".join(
@@ -176,3 +182,68 @@ def test_undamaged_files_have_results(tmp_path: Path, name: str) -> None:
     code, printed = run(tmp_path, "unwrap", name, "-o", "out.obj")
     assert code == RESULT
     require_documented_end(tmp_path, "out.obj", code, printed)
+
+
+SCENE = scene(with_uv=True)
+TRIANGLES = np.array([half for a, b, c, d in BALL[1] for half in ((a, b, c), (a, c, d))])
+FIELDS: dict[str, bytes] = MESHES | {
+    "scene.gltf": SCENE.gltf(),
+    "scene.glb": SCENE.glb(),
+    **{f"{kind}.stl": data for kind, data in stl_files(BALL[0], TRIANGLES).items()},
+}
+
+
+@pytest.mark.filterwarnings("error", "ignore:loadtxt")
+@pytest.mark.parametrize("name", FIELDS)
+def test_files_with_other_fields_are_read_and_written_or_refused(tmp_path: Path, name: str) -> None:
+    """By the functions alone, as thousands of files are cheap there."""
+    path, ends = tmp_path / name, set()
+    (tmp_path / "far").mkdir()
+    for seed in range(MANY_SEEDS):
+        path.write_bytes(with_other_fields(FIELDS[name], random.Random(seed)))
+        try:
+            file = read_mesh_file(path)
+        except InputError as error:
+            assert error.code in REFUSALS and len(error.message) < 400
+            ends.add(error.code)
+            continue
+        except OSError:  # of a file that the document names
+            continue
+        uv = np.zeros((len(file.triangulation.triangles), 3, 2))
+        for suffix in (".obj", ".gltf", ".glb", ".ply"):
+            out = tmp_path / "far" / f"out{suffix}"
+            out.unlink(missing_ok=True)
+            try:
+                write_mesh_file(out, file, uv)
+            except InputError as error:
+                assert error.code in REFUSALS and len(error.message) < 400
+                assert not out.exists()
+                continue
+            ends.add("written")
+            if suffix in (".gltf", ".glb"):
+                content_of(out.read_bytes())
+    assert {"written", "MALFORMED_FILE"} <= ends
+
+
+@pytest.mark.parametrize("name", ["scene.gltf", "scene.glb", "binary.stl", "text.stl"])
+def test_commands_on_files_with_other_fields(tmp_path: Path, name: str) -> None:
+    ends = set()
+    for seed in range(SEEDS // 3):
+        (tmp_path / name).write_bytes(with_other_fields(FIELDS[name], random.Random(1000 + seed)))
+        code, printed = run(tmp_path, "unwrap", name, "-o", "out.obj")
+        require_documented_end(tmp_path, "out.obj", code, printed)
+        ends.add(code)
+        (tmp_path / "out.obj").unlink(missing_ok=True)
+    assert RESULT in ends
+
+
+@pytest.mark.parametrize("name", SIDE_FILES)
+def test_side_files_with_other_fields(tmp_path: Path, name: str) -> None:
+    option = {"cones": "--cones", "seams": "--seam-edges", "importance": "--importance"}[name.split(".")[0]]
+    more = ["--mode", "low-stretch"] if option == "--importance" else []
+    (tmp_path / "ball.obj").write_bytes(MESHES["ball.obj"])
+    for seed in range(SEEDS // 2):
+        (tmp_path / name).write_bytes(with_other_fields(SIDE_FILES[name], random.Random(seed)))
+        code, printed = run(tmp_path, "unwrap", "ball.obj", "-o", "out.obj", option, name, *more)
+        require_documented_end(tmp_path, "out.obj", code, printed)
+        (tmp_path / "out.obj").unlink(missing_ok=True)
