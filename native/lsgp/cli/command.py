@@ -286,8 +286,8 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         )
         message = f"{which} left out. Unwrap all faces to measure them."
         warnings.append(Finding("FACES_WITHOUT_UV", message, faces))
-    with run.stage("measure_distortion"):
-        measurement = measure_distortion(file.surface(), corner_uv)
+    with run.stage("measure_distortion"), ProgressLine(sys.stderr) as progress:
+        measurement = measure_distortion(file.surface(), corner_uv, progress=progress)
     texels = None if args.texture_size is None else texel_density(file.surface(), corner_uv, args.texture_size)
     _warn(warnings, triangulation)
     total = len(triangulation.triangles)
@@ -297,7 +297,8 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
 
 
 def _pad(args: argparse.Namespace, run: Run) -> tuple[None, str]:
-    return None, pad_file(args, run)
+    with ProgressLine(sys.stderr) as progress:
+        return None, pad_file(args, run, progress)
 
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray
+from ..base.progress import Steps
 from .texel_raster import Indices, Shape, as_rows, centers
 
 # In texels: where the weights of the fit fall to 0, and how far a plane is carried on.
@@ -24,17 +25,20 @@ _LEAST_EXPLAINED = 0.85
 _FLATTEST = 1e-3
 
 
-def extrapolate(pixels: NDArray[Any], covered: NDArray[np.bool_], texels: Indices, nearest: Indices) -> FloatArray:
+def extrapolate(
+    pixels: NDArray[Any], covered: NDArray[np.bool_], texels: Indices, nearest: Indices, steps: Steps
+) -> FloatArray:
     """(k, channels), values beside the end of a surface, in the range of all covered texels.
 
     covered: (height * width,). texels: (k,). nearest: (k,), the covered texel nearest to each.
+    steps: told of.  Raises Cancelled.
     """
     rows, width = as_rows(pixels), pixels.shape[1]
     values = rows[nearest].astype(np.float64)
     if not len(texels):
         return values
     sources, of_source = np.unique(nearest, return_inverse=True)
-    right, down = _slopes(rows, covered, sources, (pixels.shape[0], width))[:, of_source.reshape(-1)]
+    right, down = _slopes(rows, covered, sources, (pixels.shape[0], width), steps)[:, of_source.reshape(-1)]
     way = centers(texels, width) - centers(nearest, width)
     way *= np.minimum(1.0, _FARTHEST / np.abs(way))
     change = right * way.real[:, None] + down * way.imag[:, None]
@@ -43,7 +47,7 @@ def extrapolate(pixels: NDArray[Any], covered: NDArray[np.bool_], texels: Indice
     return np.where(change == 0, values, np.clip(values + change, least, most))
 
 
-def _slopes(rows: NDArray[Any], covered: NDArray[np.bool_], sources: Indices, shape: Shape) -> FloatArray:
+def _slopes(rows: NDArray[Any], covered: NDArray[np.bool_], sources: Indices, shape: Shape, steps: Steps) -> FloatArray:
     """(2, k, channels), how values change to the right and down at covered texels, (k,); 0 where that is unclear."""
     row, column = sources // shape[1], sources % shape[1]
     own = rows[sources].astype(np.float64)
@@ -52,6 +56,7 @@ def _slopes(rows: NDArray[Any], covered: NDArray[np.bool_], sources: Indices, sh
     total, product = np.zeros(len(sources)), np.zeros((2, *own.shape))
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         for step, weight in _NEIGHBORS:
+            steps.tell()
             x, y = column + step[0], row + step[1]
             there = np.clip(y, 0, shape[0] - 1) * shape[1] + np.clip(x, 0, shape[1] - 1)
             counts = covered[there] & (x >= 0) & (x < shape[1]) & (y >= 0) & (y < shape[0])

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray
+from ..base.progress import Progress, Steps, share_of, tell
 from ..errors import Elements, InputError
 from ..surface import Surface
 from .extrapolation import extrapolate
@@ -36,10 +37,18 @@ _ROUNDING = 1e-6
 _LEAST_WEIGHT = 1e-3
 # Of filling gutters: each takes a weighted mean of covered texels and other gutters, so errors shrink with every pass.
 _PASSES = 4
+# Of the time of padding: which texels are covered, what lies beyond borders, and filling gutters from there.
+_COVERED, _WALKED, _FILLED = 0.2, 0.5, 0.8
 
 
 def pad_image(
-    image: ArrayLike, surface: Surface, corner_uv: ArrayLike, margin: float, *, normal_map: bool = False
+    image: ArrayLike,
+    surface: Surface,
+    corner_uv: ArrayLike,
+    margin: float,
+    *,
+    normal_map: bool = False,
+    progress: Progress | None = None,
 ) -> NDArray[Any]:
     """A texture whose gutters hold the content beyond the cuts, so that filtered lookups match on both sides of a cut.
 
@@ -49,6 +58,7 @@ def pad_image(
     margin: how far gutters reach from islands, in pixels.
     normal_map: the first two channels are a direction in the tangent plane, to the right and up, with 0 at half the
             range of integers, at 1/2 in floating point; it is rotated with the map.
+    progress: as for `pack_islands`.
 
     A texel whose center is in no triangle gets the value of the surface beyond the nearest boundary of the island,
     found by unfolding triangles across all edges on the way; the sample is bilinear, from covered texels and from
@@ -60,51 +70,63 @@ def pad_image(
     squeezed for an image that is not square, as by `correct_aspect`, transitions are those on the image. The argument
     is not modified; returns an image of its shape and dtype.
     Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER, INDEX_OUT_OF_RANGE; ISLANDS_OUTSIDE the unit square,
-    as in seamless layouts, in which a texel is at several places of the surface; NO_UV if nothing is mapped.
+    as in seamless layouts, in which a texel is at several places of the surface; NO_UV if nothing is mapped. Cancelled.
 
     >>> image = np.zeros((64, 64, 3), np.uint8)
     >>> padded = lsgp.pad_image(image, surface, lsgp.auto_unwrap(surface).corner_uv, margin=4)
     >>> padded.shape, padded.dtype
     ((64, 64, 3), dtype('uint8'))
     """
+    arguments.require_callable(progress)
     turns_normals = arguments.flag("normal_map", normal_map)
     pixels = _image(image, turns_normals)
     uv = _coordinates(surface, corner_uv)
     shape: Shape = (pixels.shape[0], pixels.shape[1])
     reach = min(_margin(margin), math.hypot(*shape))
     corners = to_pixels(uv, shape)
-    covered = covering_triangles(corners, shape) >= 0
-    texels, beyond = _beyond_borders(surface, corners, covered, reach, shape)
+    covered = covering_triangles(corners, shape, Steps(share_of(progress, 0.0, _COVERED))) >= 0
+    texels, beyond = _beyond_borders(
+        surface, corners, covered, reach, shape, Steps(share_of(progress, _COVERED, _WALKED))
+    )
 
-    gutters, known = _filled(pixels, covered, texels, beyond, turns_normals)
+    gutters, known = _filled(
+        pixels, covered, texels, beyond, turns_normals, Steps(share_of(progress, _WALKED, _FILLED))
+    )
+    steps = Steps(share_of(progress, _FILLED, 1.0))
     out = pixels.copy()
     rows = as_rows(out)
     rows[texels[known]] = convert_texels(gutters[known], pixels.dtype)
     rest = texels[~known]
-    source = nearest_covered(rest, covered.reshape(shape), math.ceil(reach) + 1)
+    source = nearest_covered(rest, covered.reshape(shape), math.ceil(reach) + 1, steps)
     rest, source = rest[source >= 0], source[source >= 0]
-    values = extrapolate(out, covered, rest, source)
+    values = extrapolate(out, covered, rest, source, steps)
     if turns_normals:
         _keep_lengths(values, rows[source], pixels.dtype)
     rows[rest] = convert_texels(values, pixels.dtype)
+    tell(progress, 1.0)
     return out
 
 
 def _beyond_borders(
-    surface: Surface, corners: ComplexArray, covered: NDArray[np.bool_], margin: float, shape: Shape
+    surface: Surface, corners: ComplexArray, covered: NDArray[np.bool_], margin: float, shape: Shape, steps: Steps
 ) -> tuple[Indices, Walked]:
     """The texels of gutters, and where the centers of each lie beyond the nearest border."""
     seams = find_seams(surface.triangles, corners)
     borders = np.flatnonzero(seams.is_border)
     segments = np.stack([corners.ravel(), corners[:, [1, 2, 0]].ravel()], axis=1)[borders]
-    nearest = nearest_segments(segments, margin, ~covered, shape)
+    nearest = nearest_segments(segments, margin, ~covered, shape, steps)
     texels = np.flatnonzero(nearest >= 0)
     places, chosen = centers(texels, shape[1]), nearest[texels]
-    return texels, walk(seams, borders[chosen], nearest_points(segments[chosen], places), places)
+    return texels, walk(seams, borders[chosen], nearest_points(segments[chosen], places), places, steps)
 
 
 def _filled(
-    pixels: NDArray[Any], covered: NDArray[np.bool_], texels: Indices, beyond: Walked, turns_normals: bool
+    pixels: NDArray[Any],
+    covered: NDArray[np.bool_],
+    texels: Indices,
+    beyond: Walked,
+    turns_normals: bool,
+    steps: Steps,
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
     """(k, channels) what is beyond each of these texels, and where that is known.
 
@@ -114,7 +136,7 @@ def _filled(
     work = pixels.astype(np.float64 if pixels.dtype == np.float64 else np.float32)
     rows, filled = as_rows(work), covered.copy()
     for _ in range(_PASSES):
-        values, known = _sampled(work, filled, beyond.place)
+        values, known = _sampled(work, filled, beyond.place, steps)
         known &= beyond.arrived
         if turns_normals:
             _turn_normals(values, beyond.turn, pixels.dtype)
@@ -124,7 +146,7 @@ def _filled(
 
 
 def _sampled(
-    pixels: NDArray[Any], covered: NDArray[np.bool_], places: ComplexArray
+    pixels: NDArray[Any], covered: NDArray[np.bool_], places: ComplexArray, steps: Steps
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
     """(k, channels) bilinear samples of the texels that are covered, and where there are any."""
     height, width = pixels.shape[:2]
@@ -133,6 +155,7 @@ def _sampled(
     across, down = places.real - 0.5 - left, places.imag - 0.5 - top
     values, total = np.zeros((len(places), rows.shape[1])), np.zeros(len(places))
     for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        steps.tell()
         x = np.clip(left + j, 0, width - 1).astype(np.int64)
         y = np.clip(top + i, 0, height - 1).astype(np.int64)
         texels = y * width + x

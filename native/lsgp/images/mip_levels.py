@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray
+from ..base.progress import Progress, share_of, tell
 from ..errors import InputError
 from ..surface import Surface
 from .gutters import convert_texels, pad_image
 
+# Of the time that is left, what a level takes: those after it have a quarter of its texels and less.
+_FIRST = 0.75
+
 
 def pad_mip_levels(
-    image: ArrayLike, surface: Surface, corner_uv: ArrayLike, margins: Sequence[float], *, normal_map: bool = False
+    image: ArrayLike,
+    surface: Surface,
+    corner_uv: ArrayLike,
+    margins: Sequence[float],
+    *,
+    normal_map: bool = False,
+    progress: Progress | None = None,
 ) -> list[NDArray[Any]]:
     """The texture and its mip levels, each padded as by `pad_image`, for renderers that take all levels.
 
@@ -28,8 +39,9 @@ def pad_mip_levels(
     are the means of those that they cover, also in gutters, and of the values as they are stored; then its gutters are
     filled again. So lookups match across cuts at levels at which the gutters of the image itself would be too narrow.
     Levels are halved in floating point, and rounded only when they are returned.
-    Raises InputError: that of `pad_image`; WRONG_PARAMETER: there are more margins than levels, or none.
+    Raises InputError: that of `pad_image`; WRONG_PARAMETER: there are more margins than levels, or none. Cancelled.
     """
+    arguments.require_callable(progress)
     widths = arguments.floats("margins", margins)
     if widths.ndim != 1 or not (np.isfinite(widths) & (widths >= 0)).all():
         arguments.refuse("margins", margins, "pass a list of widths in pixels, 0 or more")
@@ -41,13 +53,17 @@ def pad_mip_levels(
             f"margins has {len(widths)} values; an image of shape {pixels.shape} and its mip levels are {most}. Pass "
             "one margin for each.",
         )
-    levels = [pad_image(pixels, surface, corner_uv, widths[0], normal_map=normal_map)]
+    pad = partial(pad_image, surface=surface, corner_uv=corner_uv, normal_map=normal_map)
+    begin, end = 0.0, _FIRST if len(widths) > 1 else 1.0
+    levels = [pad(pixels, margin=widths[0], progress=share_of(progress, begin, end))]
     # Normals have their zero at half the range of integers, but at 1/2 in floating point.
     middle = np.iinfo(pixels.dtype).max / 2 if pixels.dtype.kind == "u" else 0.5
     level = levels[0].astype(np.float64) - middle + 0.5
     for margin in widths[1:]:
-        level = pad_image(_halved(_halved(level, 0), 1), surface, corner_uv, margin, normal_map=normal_map)
+        begin, end = end, _FIRST * (1.0 - end) + end
+        level = pad(_halved(_halved(level, 0), 1), margin=margin, progress=share_of(progress, begin, end))
         levels.append(convert_texels(level - 0.5 + middle, pixels.dtype))
+    tell(progress, 1.0)
     return levels
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray
+from ..base.progress import Steps
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]
@@ -52,14 +53,15 @@ def edge_distances(corners: ComplexArray, places: ComplexArray) -> FloatArray:
     return turn[:, None] * cross(along, places[:, None] - corners) / np.abs(along)
 
 
-def covering_triangles(corners: ComplexArray, shape: Shape) -> Indices:
+def covering_triangles(corners: ComplexArray, shape: Shape, steps: Steps) -> Indices:
     """(height * width,), the first triangle that the center of each texel is in; -1: it is in none.
 
-    corners: (m, 3); triangles that are not finite or have no area cover nothing.
+    corners: (m, 3); triangles that are not finite or have no area cover nothing. steps: told of.  Raises Cancelled.
     """
     owner = np.full(shape[0] * shape[1], -1, np.int64)
     usable = np.flatnonzero(has_area(corners))
     for rows, texels in _pairs(corners[usable], 0.0, shape):
+        steps.tell()
         triangles = usable[rows]
         inside = (edge_distances(corners[triangles], centers(texels, shape[1])) >= -ON_EDGE).all(axis=1)
         triangles, texels = triangles[inside], texels[inside]
@@ -76,14 +78,17 @@ def has_area(corners: ComplexArray) -> NDArray[np.bool_]:
         return np.abs(cross(sides[:, 0], sides[:, 1])) > ON_EDGE * np.abs(sides).max(axis=1, initial=0.0)
 
 
-def nearest_segments(segments: ComplexArray, margin: float, empty: NDArray[np.bool_], shape: Shape) -> Indices:
+def nearest_segments(
+    segments: ComplexArray, margin: float, empty: NDArray[np.bool_], shape: Shape, steps: Steps
+) -> Indices:
     """(height * width,), the segment nearest to the center of each empty texel, no farther than margin; -1: none.
 
-    segments: (k, 2). empty: (height * width,).
+    segments: (k, 2). empty: (height * width,). steps: told of.  Raises Cancelled.
     """
     nearest = np.full(len(empty), -1, np.int64)
     least = np.full(len(empty), np.nextafter(margin, math.inf))
     for rows, texels in _pairs(segments, margin, shape):
+        steps.tell()
         wanted = empty[texels]
         rows, texels = rows[wanted], texels[wanted]
         places = centers(texels, shape[1])
@@ -102,10 +107,11 @@ def nearest_points(segments: ComplexArray, places: ComplexArray) -> ComplexArray
     return start + np.clip(((places - start) * along.conj()).real / length, 0, 1) * along
 
 
-def nearest_covered(texels: Indices, covered: NDArray[np.bool_], reach: int) -> Indices:
+def nearest_covered(texels: Indices, covered: NDArray[np.bool_], reach: int, steps: Steps) -> Indices:
     """(k,), the covered texel nearest to each of these, at most `reach` columns and rows away; -1: there is none.
 
-    covered: (height, width). Exact: the nearest of each column is found first, the nearest column after it.
+    covered: (height, width). steps: told of.  Raises Cancelled.
+    Exact: the nearest of each column is found first, the nearest column after it.
     """
     if not len(texels):
         return texels
@@ -114,6 +120,7 @@ def nearest_covered(texels: Indices, covered: NDArray[np.bool_], reach: int) -> 
     row, column = texels // width, texels % width
     least, found = np.full(len(texels), np.inf), np.full(len(texels), -1, np.int64)
     for step in sorted(range(-reach, reach + 1), key=abs):
+        steps.tell()
         there = np.clip(column + step, 0, width - 1)
         above = in_column[row, there].astype(np.int64)
         distance = np.where(above < 0, np.inf, (there - column) ** 2.0 + (above - row) ** 2.0)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import IndexArray
+from ..base.progress import Steps
 from .texel_raster import ON_EDGE, ComplexArray, Indices, cross, edge_distances, has_area
 
 # Walks over more triangles are given up; they happen only where triangles are far smaller than texels.
@@ -61,12 +62,13 @@ def find_seams(triangles: IndexArray, corners: ComplexArray) -> Seams:
     return Seams(corners, partner, turn, shift, np.repeat(mapped, 3) & ((partner < 0) | apart))
 
 
-def walk(seams: Seams, edge: Indices, start: ComplexArray, goal: ComplexArray) -> Walked:
-    """Walk from places on edges across these and straight on to goals.  All (k,)."""
+def walk(seams: Seams, edge: Indices, start: ComplexArray, goal: ComplexArray, steps: Steps) -> Walked:
+    """Walk from places on edges across these and straight on to goals.  All (k,). steps: told of.  Raises Cancelled."""
     place, begin = goal.copy(), start.copy()
     turn, arrived = np.ones(len(edge), complex), np.zeros(len(edge), bool)
     edge, active = edge.copy(), np.arange(len(edge))
     for _ in range(_MOST_STEPS):
+        steps.tell()
         active = active[seams.partner[edge[active]] >= 0]
         if not len(active):
             break

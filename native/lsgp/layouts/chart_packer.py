@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from .. import _lsgp
+from ..base.progress import UNTOLD, Progress, Steps
 from ..errors import InputError
 from .coarse_islands import coarse_triangles, doubled_areas
 from .island_gaps import ComplexArray, Indices, least_gap
@@ -79,9 +80,9 @@ class Islands:
         middle, size = (low + high) / 2, high - low
         return middle[0] + 1j * middle[1], size[0] + 1j * size[1]
 
-    def gap(self, place: ComplexArray, reach: float) -> float:
-        """The least distance between islands, infinite above `reach`."""
-        return least_gap(place[self.borders], self.island[self.borders[:, 0]], reach)
+    def gap(self, place: ComplexArray, reach: float, steps: Steps = UNTOLD) -> float:
+        """The least distance between islands, infinite above `reach`.  Raises Cancelled."""
+        return least_gap(place[self.borders], self.island[self.borders[:, 0]], reach, steps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,9 +113,11 @@ class Layout:
 class Packer:
     """xatlas with the islands and the square to pack them into."""
 
-    def __init__(self, islands: Islands, square: Square) -> None:
+    def __init__(self, islands: Islands, square: Square, progress: Progress | None = None) -> None:
+        """progress: of preparing them.  Raises Cancelled."""
         self._islands, self._square = islands, square
-        self._covers = coarse_triangles(islands.place, islands.triangles, islands.island, islands.borders)
+        self._steps = UNTOLD
+        self._covers = coarse_triangles(islands.place, islands.triangles, islands.island, islands.borders, progress)
         self._raster = _RASTER if islands.count <= _FEW_ISLANDS else 2 * _RASTER
         # Islands that are packed as their boxes: those without an area, those that xatlas takes for several, and those
         # with a vertex of so many triangles that it would take minutes, as it compares all of them.
@@ -122,12 +125,13 @@ class Packer:
         around = np.bincount(self._covers.ravel(), minlength=len(islands.island))
         self._boxed[islands.island[around > _MOST_AROUND]] = True
 
-    def improved(self, turns: ComplexArray, best: Layout | None, shorter: float = 1.0) -> Layout | None:
-        """The smallest layout found of islands so turned, if it is smaller than `best`.
+    def improved(self, turns: ComplexArray, best: Layout | None, steps: Steps, shorter: float = 1.0) -> Layout | None:
+        """The smallest layout found of islands so turned, if it is smaller than `best`.  Raises InputError, Cancelled.
 
         turns: (islands,) of length 1. best: None: any is; there is one, or InputError is raised. shorter: the side that
         it has to have at most, relative to that of `best`.
         """
+        self._steps = steps
         place = self._islands.place * turns[self._islands.island]
         found = self._first(place) if best is None else None
         most = (best or found).side * shorter
@@ -179,7 +183,7 @@ class Packer:
             if layout is None:
                 return None
             gap = 2 * self._square.share(layout.side) * layout.side
-            if self._islands.gap(layout.place, gap) >= max(gap, _TINY):
+            if self._islands.gap(layout.place, gap, self._steps) >= max(gap, _TINY):
                 return layout
         return None
 
@@ -204,7 +208,7 @@ class Packer:
         """
         for _ in range(2):
             charts = self._charts(local, size)
-            found = _run(charts, inside, padding)
+            found = _run(charts, inside, padding, self._steps)
             if found is None:
                 return None
             middle, found_size = charts.boxes(found)
@@ -238,13 +242,15 @@ class Packer:
         )
 
 
-def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
-    """(n,), where xatlas puts vertices, in texels; None if they do not fit into the square."""
+def _run(charts: Islands, inside: int, padding: int, steps: Steps = UNTOLD) -> ComplexArray | None:
+    """(n,), where xatlas puts vertices, in texels; None if they do not fit into the square.  Raises Cancelled."""
+    steps.tell()
     positions = np.stack([charts.place.real, charts.place.imag], axis=1)
     owner = charts.island[charts.triangles[:, :1]]
     # Most layouts that are looked for are not there, which xatlas finds out at ten times the cost.
     if not _lsgp.islands_fit(positions[charts.triangles], owner.ravel().astype(np.int32), inside, padding):
         return None
+    steps.tell()
     xatlas = find_xatlas()
     others = _threads()
     atlas = xatlas.Atlas()

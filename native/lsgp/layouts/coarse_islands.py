@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.arguments import FloatArray
 from ..base.ear_clipping import clip_ears
+from ..base.progress import Progress, Steps, share_of
 from .island_gaps import ComplexArray, Indices
 
 # Corners of a border that lie on a line so well, relative to the square root of the island's area, are left out.
@@ -23,28 +24,42 @@ _WORTHWHILE = 3
 _MOST_HOLES = 50
 # Packers compare all triangles of a vertex.
 _MOST_AROUND = 100
+# Of points, a tenth of a second or less.
+_LOOKED_AT_BETWEEN_STEPS = 1_000_000
 
 
-def coarse_triangles(place: ComplexArray, triangles: Indices, island: Indices, borders: Indices) -> Indices:
+def coarse_triangles(
+    place: ComplexArray,
+    triangles: Indices,
+    island: Indices,
+    borders: Indices,
+    progress: Progress | None = None,
+) -> Indices:
     """(k, 3) vertices of triangles that cover each island as the given ones do, within rounding; those given of islands
     where there is no such cover, as they overlap themselves, or where it would not be much smaller.
 
     place: (n,) of vertices, which are joined within an island alone. triangles: (m, 3). island: (n,) of each vertex.
     borders: (s, 2) vertices, ends of edges that one triangle alone has, along it.
+    Raises Cancelled.
     """
     of_triangle, of_border = island[triangles[:, 0]], island[borders[:, 0]]
     by_island = np.split(np.argsort(of_triangle, kind="stable"), np.cumsum(np.bincount(of_triangle))[:-1])
     border_count = np.bincount(of_border, minlength=len(by_island))
+    borders_by_island = np.split(np.argsort(of_border, kind="stable"), np.cumsum(border_count)[:-1])
     covers = []
-    for number, own in enumerate(by_island):
+    done = 0
+    for own, own_borders in zip(by_island, borders_by_island, strict=True):
+        steps = Steps(share_of(progress, done / len(triangles), (done + len(own)) / len(triangles)))
+        done += len(own)
         cover = None
-        if len(own) > _WORTHWHILE * border_count[number]:
-            cover = _cover(place, triangles[own], borders[of_border == number])
+        if len(own) > _WORTHWHILE * len(own_borders):
+            steps.tell()
+            cover = _cover(place, triangles[own], borders[own_borders], steps)
         covers.append(triangles[own] if cover is None else cover)
     return np.concatenate(covers)
 
 
-def _cover(place: ComplexArray, triangles: Indices, borders: Indices) -> Indices | None:
+def _cover(place: ComplexArray, triangles: Indices, borders: Indices, steps: Steps) -> Indices | None:
     following = dict(borders.tolist())
     if len(following) < len(borders):
         return None  # its border touches itself
@@ -55,12 +70,13 @@ def _cover(place: ComplexArray, triangles: Indices, borders: Indices) -> Indices
     if not loops or len(loops) > _MOST_HOLES + 1:
         return None
     tolerance = _STRAIGHT * float(np.sqrt(areas.sum()))
-    polygon = _bridged(place, loops, tolerance, triangles)
+    polygon = _bridged(place, loops, tolerance, triangles, steps)
     if polygon is None:
         return None
     low = place[polygon].real.min() + 1j * place[polygon].imag.min()
     size = np.abs(place[polygon] - low).max()
     points = (place[polygon] - low) / size
+    steps.tell()
     (ears,) = clip_ears(np.stack([points.real, points.imag], axis=1)[None])
     cover = polygon[ears]
     around = np.abs(place[borders[:, 1]] - place[borders[:, 0]]).sum()
@@ -91,7 +107,7 @@ def _loops(following: dict[int, int]) -> list[list[int]] | None:
     return sorted(loops, key=len, reverse=True)
 
 
-def _without_straight(place: ComplexArray, loop: list[int], tolerance: float) -> list[int]:
+def _without_straight(place: ComplexArray, loop: list[int], tolerance: float, steps: Steps) -> list[int]:
     """The corners of a loop without those that are less than the tolerance off the line between their neighbors that
     stay (Ramer 1972, Douglas and Peucker 1973)."""
     points = place[[*loop, loop[0]]]
@@ -99,8 +115,13 @@ def _without_straight(place: ComplexArray, loop: list[int], tolerance: float) ->
     far = int(np.abs(points - points[0]).argmax())
     kept[[0, far]] = True
     open_spans = [(0, far), (far, len(loop))]
+    looked_at = 0
     while open_spans:
         begin, end = open_spans.pop()
+        looked_at += end - begin
+        if looked_at > _LOOKED_AT_BETWEEN_STEPS:
+            looked_at = 0
+            steps.tell()
         if end - begin < 2:
             continue
         chord = points[end] - points[begin]
@@ -112,14 +133,17 @@ def _without_straight(place: ComplexArray, loop: list[int], tolerance: float) ->
     return [vertex for vertex, stays in zip(loop, kept, strict=False) if stays]
 
 
-def _bridged(place: ComplexArray, loops: list[list[int]], tolerance: float, triangles: Indices) -> Indices | None:
+def _bridged(
+    place: ComplexArray, loops: list[list[int]], tolerance: float, triangles: Indices, steps: Steps
+) -> Indices | None:
     """One polygon along all loops, which runs to each further one and back along edges inside; None where it cannot."""
-    polygon, *holes = (_without_straight(place, loop, tolerance) for loop in loops)
+    polygon, *holes = (_without_straight(place, loop, tolerance, steps) for loop in loops)
     if holes:
         edges = _Edges(triangles)
         taken = {vertex for loop in loops for vertex in loop}
         once = set(polygon)  # a bridge may end at those
         for hole in holes:
+            steps.tell()
             path = edges.path(hole, once, taken)
             if path is None:
                 return None

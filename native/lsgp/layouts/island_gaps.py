@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray
+from ..base.progress import UNTOLD, Steps
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]
@@ -37,10 +38,11 @@ def border_edges(vertices: Indices) -> tuple[Indices, Indices]:
     return corners // 3, corners % 3
 
 
-def least_gap(segments: ComplexArray, island: Indices, reach: float) -> float:
+def least_gap(segments: ComplexArray, island: Indices, reach: float, steps: Steps = UNTOLD) -> float:
     """The least distance between segments of different islands; infinite where it is more than `reach`.
 
-    segments: (s, 2), their ends. island: (s,) of each. reach: 0 or more. Segments that cross are at distance 0.
+    segments: (s, 2), their ends. island: (s,) of each. reach: 0 or more. Segments that cross are at distance 0. steps:
+    told of. Raises Cancelled.
     """
     if not len(segments):
         return np.inf
@@ -53,6 +55,7 @@ def least_gap(segments: ComplexArray, island: Indices, reach: float) -> float:
     pieces, of_segment = _pieces(segments, cell)
     least = np.inf
     for first, second in _near_pairs((pieces.mean(axis=1) - low) / cell, island[of_segment], reach / cell):
+        steps.tell()
         least = min(least, float(_distances(pieces[first], pieces[second]).min()))
     return least if least <= reach else np.inf
 

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
-from ..base.progress import Progress
-from ..errors import Cancelled
+from ..base.progress import Progress, Steps, share_of, tell
 from ..triangles import uv_area
 from .chart_packer import Islands, Layout, Packer, Square
 from .island_gaps import ComplexArray, border_edges
@@ -62,12 +61,19 @@ class LayoutSearch:
     turned, and then the chosen one is packed with any turns, of which quarters are tried first.
     """
 
-    def __init__(self, islands: Islands, square: Square, island_count: int | None = None) -> None:
-        """island_count: of all squares together, if these are those of one of several; the more there are, the fewer
-        turns are tried in each."""
+    def __init__(
+        self,
+        islands: Islands,
+        square: Square,
+        progress: Progress | None = None,
+        *,
+        island_count: int | None = None,
+    ) -> None:
+        """progress: of preparing them. island_count: of all squares together, if these are those of one of several; the
+        more there are, the fewer turns are tried in each.  Raises Cancelled."""
         self.islands, self._square = islands, square
         self._all_islands = island_count or islands.count
-        self._packer = Packer(islands, square)
+        self._packer = Packer(islands, square, progress)
         # The best layout, its turns, and where the random numbers stand.
         self._by_quarters: tuple[Layout, ComplexArray, Any] | None = None
 
@@ -81,22 +87,23 @@ class LayoutSearch:
         sharing = max(self._all_islands, _ISLANDS_OF_ALL_TRIES)
         middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // sharing) for tries in _TRIES)
         tries = middle if may_turn else 1
+        by_quarters = self._by_quarters if may_turn else None
+        begin = 0 if by_quarters is None else middle
         if may_turn is True:
-            is_aligned, sides = lie_along_axes(self.islands), sides_when_turned(self.islands)
+            least = begin / (middle + max(2, free))
+            turning = share_of(progress, least, least)
+            is_aligned, sides = lie_along_axes(self.islands), sides_when_turned(self.islands, turning)
             squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
             tries += 2 if is_aligned.all() else free
         # The generator whose numbers never change with the version of numpy.
         random = np.random.RandomState(0)
         best: Layout | None = None
         turns = best_turns = np.ones(count, np.complex128)
-        begin = 0
-        if may_turn and self._by_quarters is not None:
-            best, best_turns, numbers = self._by_quarters
+        if by_quarters is not None:
+            best, best_turns, numbers = by_quarters
             random.set_state(numbers)
-            begin = middle
         for number in range(begin, tries):
-            if progress is not None and progress(number / tries) is False:
-                raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
+            tell(progress, number / tries)
             shorter = 1.0
             if number == middle:
                 turns = np.where(is_aligned, best_turns, squarest)
@@ -114,13 +121,13 @@ class LayoutSearch:
                     direction = _DIRECTIONS[(random.random_sample(sides.shape) * fits).argmax(axis=0)]
                     further = np.where(is_aligned, further, direction * further)
                 turns = np.where(kept, best_turns, further)
-            found = self._packer.improved(turns, best, shorter)
+            steps = Steps(share_of(progress, number / tries, (number + 1) / tries))
+            found = self._packer.improved(turns, best, steps, shorter)
             if found is not None:
                 best, best_turns = found, turns
             if number == middle - 1:
                 self._by_quarters = best, best_turns, random.get_state()
-        if progress is not None:
-            progress(1.0)
+        tell(progress, 1.0)
         return best
 
 
@@ -133,10 +140,17 @@ def lie_along_axes(islands: Islands) -> NDArray[np.bool_]:
     return 2 * aligned >= whole
 
 
-def sides_when_turned(islands: Islands) -> FloatArray:
-    """(directions, islands), of the square around each island, turned into each of the directions."""
+def sides_when_turned(islands: Islands, progress: Progress | None = None) -> FloatArray:
+    """(directions, islands), of the square around each island, turned into each direction.
+
+    progress: without time of its own.  Raises Cancelled.
+    """
     # Islands that are closed have no border, but count.
     ends = np.union1d(islands.borders, np.unique(islands.island, return_index=True)[1])
     around = replace(islands, place=islands.place[ends], island=islands.island[ends])
-    sizes = np.array([around.boxes(around.place * turn)[1] for turn in _DIRECTIONS])
-    return np.maximum(sizes.real, sizes.imag)
+    sides = np.empty((len(_DIRECTIONS), islands.count))
+    for number, turn in enumerate(_DIRECTIONS):
+        tell(progress, 0.0)
+        size = around.boxes(around.place * turn)[1]
+        sides[number] = np.maximum(size.real, size.imag)
+    return sides

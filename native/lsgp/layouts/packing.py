@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
-from ..base.progress import Progress
-from ..errors import Cancelled, Elements, Finding, InputError
+from ..base.progress import Progress, share_of, tell
+from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
 from .chart_packer import Square, find_xatlas
@@ -34,6 +34,10 @@ SHELVES = "shelves"
 INSTALL = "pip install 'lsgp[pack]'"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
+
+# Of the time of packing, and of finding stacks and packing those that stay.
+_PREPARING = 0.2
+_STACKING = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,15 +179,19 @@ def pack_islands(
     given = _digest(uv, island)
     asked = given, square, may_turn, tiles
     if asked in kept.layouts:
-        if progress is not None and progress(1.0) is False:
-            raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
+        tell(progress, 1.0)
         return kept.layouts[asked].copy()
     if tiles > 1:
         out[solved] = spread_over_tiles(uv[solved], island[solved], square.margin, tiles, may_turn, progress)
     else:
         searched = given, square, bool(may_turn)
         # One that is stopped is not kept.
-        search = kept.searches.pop(searched, None) or LayoutSearch(islands_of(uv[solved], island[solved]), square)
+        search = kept.searches.pop(searched, None)
+        if search is None:
+            tell(progress, 0.0)
+            islands = islands_of(uv[solved], island[solved])
+            search = LayoutSearch(islands, square, share_of(progress, 0.0, _PREPARING))
+            progress = share_of(progress, _PREPARING, 1.0)
         found = search.best(may_turn, progress)
         kept.searches[searched] = search
         place = (found.place - found.low) / (found.side if square.fill else 1.0)
@@ -249,19 +257,21 @@ def laid_out(
         if packing.pack == "tight" or packing.udim is not None or packing.stack is not None:
             raise
         name, packed, stacked = SHELVES, result, none
-        if progress is not None:
-            progress(1.0)
+        tell(progress, 1.0)
     return LaidOut(packed if texels is None else at_texel_density(surface, packed, texels), name, stacked)
 
 
-def _packed(result: Result, stack: Stack | None, margin: float, **how: Any) -> tuple[Result, NDArray[np.bool_]]:
-    """The result packed, and the triangles, (m,) bool, that overlap others.  how: as for `pack_islands`."""
+def _packed(
+    result: Result, stack: Stack | None, margin: float, *, progress: Progress | None, **how: Any
+) -> tuple[Result, NDArray[np.bool_]]:
+    """The result packed, and the triangles, (m,) bool, that overlap others.  progress, how: as for `pack_islands`."""
     uv, island = result.corner_uv, result.island
     if stack is None:
-        packed = pack_islands(uv, island, margin, **how)
+        packed = pack_islands(uv, island, margin, **how, progress=progress)
         return replace(result, corner_uv=packed), np.zeros(len(island), bool)
-    stacks = find_stacks(uv, island, mirrored=stack == "mirrored")
-    packed = stacks.stacked(pack_islands(uv, np.where(stacks.kept, island, -1).astype(np.int32), margin, **how))
+    stacks = find_stacks(uv, island, mirrored=stack == "mirrored", progress=share_of(progress, 0.0, _STACKING))
+    left = np.where(stacks.kept, island, -1).astype(np.int32)
+    packed = stacks.stacked(pack_islands(uv, left, margin, **how, progress=share_of(progress, _STACKING, 1.0)))
     warnings = list(result.warnings)
     if stacks.count:
         message = (

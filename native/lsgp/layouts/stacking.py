@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..base import arguments
 from ..base.arguments import FloatArray
 from ..base.equality import EqualByContent
+from ..base.progress import Progress, tell
 from ..base.short_repr import ShortRepr
 from .layout_search import Islands, islands_of
 
@@ -38,17 +40,20 @@ class Stacks(EqualByContent, ShortRepr):
         return corner_uv.reshape(-1, 2)[self.source]
 
 
-def find_stacks(corner_uv: ArrayLike, island: ArrayLike, *, mirrored: bool = False) -> Stacks:
+def find_stacks(
+    corner_uv: ArrayLike, island: ArrayLike, *, mirrored: bool = False, progress: Progress | None = None
+) -> Stacks:
     """The islands with the shape and the triangles of another one, up to a rotation and a translation.
 
     corner_uv: (m, 3, 2), of one scale. island: (m,), -1 for none. mirrored: whether reflected islands count as well;
-    what is written on one stands mirrored on the other.
+    what is written on one stands mirrored on the other. progress: as for `pack_islands`.
 
     Each is stacked on the first island of its shape. Vertices may differ by 1e-4 of the square root of the island's
     area; triangles must be joined alike, whatever their order. Of several ways to lay a symmetric island on another,
     that which keeps the order of triangles is taken if there is one.
-    Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER.
+    Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER; Cancelled.
     """
+    arguments.require_callable(progress)
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     may_mirror = arguments.flag("mirrored", mirrored)
@@ -58,10 +63,14 @@ def find_stacks(corner_uv: ArrayLike, island: ArrayLike, *, mirrored: bool = Fal
     count = 0
     mapped = np.flatnonzero((island >= 0) & np.isfinite(uv).all(axis=(1, 2)))
     order = mapped[np.argsort(island[mapped], kind="stable")]
+    looked_at = 0
     for triangles in np.split(order, np.flatnonzero(np.diff(island[order])) + 1) if len(order) else []:
+        heard = partial(tell, progress, looked_at / len(order))
+        heard()
+        looked_at += len(triangles)
         shape = _Shape.of(triangles, uv)
         alike = found.setdefault(shape.key, [])
-        corners = next(filter(None, (shape.corners_on(other, may_mirror) for other in alike)), None)
+        corners = next(filter(None, (shape.corners_on(other, may_mirror, heard) for other in alike)), None)
         if corners is None:
             alike.append(shape)
             continue
@@ -110,15 +119,16 @@ class _Shape:
     def key(self) -> tuple[int, int]:
         return len(self.corners), len(self.place)
 
-    def corners_on(self, other: _Shape, may_mirror: bool) -> list[int] | None:
+    def corners_on(self, other: _Shape, may_mirror: bool, heard: Callable[[], None]) -> list[int] | None:
         """The corner of the surface in the other island that each of this one's lies on, (3 k,); None: it does not fit.
 
-        both: of one key.
+        both: of one key. heard: called before each way to lay it there is tried.
         """
         near = TOLERANCE * other.size
         if not self.across or not other.across or np.abs(self.lengths - other.lengths).max() > 2 * near:
             return None
         for first, turned in self._starts(other, near, may_mirror):
+            heard()
             on = self._laid_on(other, first, turned, near)
             if on is not None:
                 return [int(3 * other.triangles[corner // 3] + corner % 3) for corner in on]

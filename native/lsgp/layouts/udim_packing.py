@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
-from ..base.progress import Progress
+from ..base.progress import Progress, Steps, share_of, tell
 from ..errors import InputError
 from ..triangles import uv_areas
 from .chart_packer import Indices, Islands, Layout, Square
@@ -22,8 +22,8 @@ _GAIN = 0.995
 # By how much the side of all tiles grows until all fit with margins of one width.
 _GROWTH = 1.01
 _MOST_GROWTHS = 100
-# Of the progress that is left, for each search: how many there will be is not known.
-_SHARE = 0.1
+# Of the time of a search: preparing its islands.
+_PREPARING = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,7 @@ def spread_over_tiles(
         row, column = divmod(t, TILES_IN_ROW)
         place = (one.layout.place - one.layout.low) / side + complex(column, row)
         out[spread.tile[number] == t] = np.stack([place.real, place.imag], axis=-1)[one.islands.triangles] + margin
-    if progress is not None:
-        progress(1.0)
+    tell(progress, 1.0)
     return out
 
 
@@ -163,9 +162,9 @@ class _Search:
     ) -> None:
         """uv: (m, 3, 2). number: (m,), the island of each triangle. margin: of a tile's side."""
         self.margin = margin
-        self._uv, self._number, self._may_turn, self._progress = uv, number, may_turn, progress
+        self._uv, self._number, self._may_turn = uv, number, may_turn
         self._island_count = int(number.max()) + 1
-        self._told = 0.0
+        self._steps = Steps(progress)
 
     def filled(self, wanted: NDArray[np.bool_]) -> _Tile:
         """The islands that are wanted, (islands,), in as small a tile as is found.  Raises InputError, Cancelled."""
@@ -173,13 +172,8 @@ class _Search:
 
     def run(self, wanted: NDArray[np.bool_], square: Square) -> _Tile:
         """The same with another margin."""
-        inside = wanted[self._number]
+        inside, progress = wanted[self._number], self._steps.next()
         islands = islands_of(self._uv[inside], self._number[inside])
-        tile = _Tile(islands, LayoutSearch(islands, square, self._island_count).best(self._may_turn, self._tell))
-        self._told += (1 - self._told) * _SHARE
-        return tile
-
-    def _tell(self, done: float) -> bool | None:
-        if self._progress is None:
-            return None
-        return self._progress(self._told + done * (1 - self._told) * _SHARE)
+        preparing = share_of(progress, 0.0, _PREPARING)
+        search = LayoutSearch(islands, square, preparing, island_count=self._island_count)
+        return _Tile(islands, search.best(self._may_turn, share_of(progress, _PREPARING, 1.0)))

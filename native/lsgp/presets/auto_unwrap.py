@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..api import Solver, crease_borders
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
-from ..base.progress import Progress, share_of
+from ..base.progress import Progress, share_of, tell
 from ..errors import InputError
 from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
 from ..layouts.texels import TexelLayout, at_texel_density, with_tiny_findings
@@ -141,7 +141,7 @@ def auto_unwrap(
     given = GivenCones.of(cones, angles, count, target)
     choices = CreaseChoices(surface)
     if arguments.flag("creases", creases):
-        choices = crease_choices(surface, given, preset, chosen, sharp)
+        choices = crease_choices(surface, given, preset, chosen, sharp, share_of(progress, 0.0, 0.0))
     if pins is not None:
         choices = replace(choices, possible=None)
     if texels is not None:
@@ -214,6 +214,7 @@ def crease_choices(
     preset: Preset,
     options: Options,
     sharp: ArrayLike | None = None,
+    progress: Progress | None = None,
 ) -> CreaseChoices:
     """The borders of `crease_borders` that a preset requires, and those with which it may become better.
 
@@ -221,21 +222,22 @@ def crease_choices(
     across which the texture continues. Both may gain by those of other components with half of their curvature on
     creases, unless the number of cones is given. Seamless layouts on squares, as with "tile", may gain by those of hard
     components where no cones or seams are marked. With straight borders or prescribed turning: none.
-    sharp, errors: as for `crease_borders`.
+    sharp, errors: as for `crease_borders`. progress: without time of its own.
     """
+    find_borders = partial(crease_borders, surface, sharp=sharp, progress=share_of(progress, 0.0, 0.0))
     most_corners = _MOST_CORNERS[preset]
     if options.border != "free" or options.loop_turning:
         return CreaseChoices(surface)
     if options.seamless is not None:
         is_free = given.is_free and follows_features(surface, options)
-        further = crease_borders(surface, sharp=sharp) if is_free else ()
+        further = find_borders() if is_free else ()
         return CreaseChoices(surface, further if len(further) else None, preset)
     if most_corners is None:
         return CreaseChoices(surface)
-    required = crease_borders(surface, given.cones, sharp=sharp, most_corners=most_corners)
+    required = find_borders(given.cones, most_corners=most_corners)
     if given.count is not None:
         return CreaseChoices(_ending_at(surface, required))
-    possible = crease_borders(surface, given.cones, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
+    possible = find_borders(given.cones, least_share=_LEAST_SHARE_TO_TRY)
     further = possible[~np.isin(keys_of(possible, surface), keys_of(required, surface))]
     return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
 
@@ -282,8 +284,7 @@ def best_at_creases(
             )
         for gain, begin, end in gains:
             best = _gaining(gain, possible, best, make, share_of(progress, begin, end))
-    if progress is not None:
-        progress(1.0)  # maps that were not needed leave their time
+    tell(progress, 1.0)  # maps that were not needed leave their time
     return best
 
 
@@ -304,8 +305,7 @@ def best_for_strokes(
         toward = or_none(partial(mapped, options, share_of(progress, _TRYING, 1.0)))
         if toward is not None and follows_strokes_better(toward[2], usual[2]):
             return toward
-    if progress is not None:
-        progress(1.0)
+    tell(progress, 1.0)
     return usual
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
-from ..base.progress import Progress
+from ..base.progress import Progress, tell
 from ..surface import Surface
 from .quad_mesh import QuadMesh, scale_at
 from .surface_walk import SurfaceWalk
@@ -48,8 +48,7 @@ def polished(surface: Surface, mesh: QuadMesh, features: IndexArray, progress: P
     for attempt in range(_ATTEMPTS):
         positions, triangles, weights = places
         for done in range(_ROUNDS):
-            if progress is not None:
-                progress((attempt + done / _ROUNDS) / _ATTEMPTS)
+            tell(progress, (attempt + done / _ROUNDS) / _ATTEMPTS)
             motion = _toward_squares(positions, mesh.quads, of_quads) - positions
             motion[held] = 0.0
             triangles, weights = walk.move(triangles, weights, motion)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.progress import Progress
 from ..images.mip_levels import pad_mip_levels
 from ..io.image_files import format_image, read_image
 from ..io.side_files import UsageError
@@ -55,7 +56,7 @@ def add_pad_options(pad: argparse.ArgumentParser) -> None:
     )
 
 
-def pad_file(args: argparse.Namespace, run: Run) -> str:
+def pad_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> str:
     """Pad args.input into args.output; returns the line for people.  Raises OSError, LsgpError."""
     if args.mips < 0:
         raise UsageError(f"--mips {args.mips} is below 0; give how many mip levels to write")
@@ -70,7 +71,9 @@ def pad_file(args: argparse.Namespace, run: Run) -> str:
     corner_uv = uv_of(file, "use")
     margins = _margins(args.margin, args.mips)
     with run.stage("pad_image"):
-        levels = pad_mip_levels(image, file.surface(), corner_uv, margins, normal_map=args.normal_map)
+        levels = pad_mip_levels(
+            image, file.surface(), corner_uv, margins, normal_map=args.normal_map, progress=progress
+        )
     paths = [args.output, *mip_paths(args.output, args.mips)]
     contents = [format_image(level, path) for level, path in zip(levels, paths, strict=True)]
     write_all_whole(list(zip(paths, contents, strict=True)))

@@ -235,7 +235,7 @@ def _map(
     choices = CreaseChoices(surface)
     if args.preset is not None and args.creases:
         with run.stage("creases"):
-            choices = crease_choices(surface, cones, args.preset, options)
+            choices = crease_choices(surface, cones, args.preset, options, progress=share_of(progress, 0.0, 0.0))
 
     solvers = Solvers()
 
