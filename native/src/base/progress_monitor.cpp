@@ -7,16 +7,17 @@
 
 namespace lsgp {
 
-void ProgressMonitor::advance(double done) {
+void ProgressMonitor::advance(double done, SourcePlace place) {
+  const WatchedVisit visit(visitor_.watch(), place);
   if (!progress_) return;
   told_ = std::max(told_, low_ + std::clamp(done, 0.0, 1.0) * (high_ - low_));
   if (!progress_(told_)) throw Error(Code::cancelled, "Stopped as asked; nothing was changed.");
 }
 
-void ProgressMonitor::tick() {
+void ProgressMonitor::tick(SourcePlace place) {
   constexpr double share = 0.01;
   const double left = std::max(0.0, high_ - std::max(told_, low_));
-  advance((std::max(told_, low_) + share * left - low_) / std::max(high_ - low_, 1e-300));
+  advance((std::max(told_, low_) + share * left - low_) / std::max(high_ - low_, 1e-300), place);
 }
 
 ProgressMonitor::Interval::Interval(ProgressMonitor& monitor, double begin, double end)

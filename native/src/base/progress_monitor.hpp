@@ -18,10 +18,10 @@ class ProgressMonitor {
   ProgressMonitor& operator=(const ProgressMonitor&) = delete;
 
   // done: of the innermost active interval, 0 to 1. Throws CANCELLED.
-  void advance(double done);
+  void advance(double done, SourcePlace place = SourcePlace::here());
 
   // For loops of unknown length: advances by a fixed fraction of the remaining interval. Checkpoints call it, too.
-  void tick();
+  void tick(SourcePlace place = SourcePlace::here());
 
   // Maps this scope's progress to the interval [begin, end] of the enclosing scope.
   class Interval {
@@ -58,7 +58,7 @@ class ProgressMonitor {
   StageSeconds& seconds_;
   double low_ = 0, high_ = 1, told_ = 0;
   Stage* innermost_ = nullptr;
-  const CheckpointVisitor visitor_;
+  CheckpointVisitor visitor_;
 };
 
 }  // namespace lsgp

@@ -131,9 +131,10 @@ void ThreadTeam::run_each(int count, const std::function<void(int)>& work) {
 
 // The loop of the other threads.
 void ThreadTeam::serve(int thread) {
-  const CheckpointVisitor visitor([this] { tell_caller(); });
+  CheckpointVisitor visitor([this] { tell_caller(); });
   Lock lock(mutex_);
   while (!is_over_) {
+    visitor.watch().restart(SourcePlace::here());  // the caller visits after every piece of work
     if (!take_work(lock, thread)) new_work_.wait(lock);
   }
 }
