@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from ..base import arguments
 from ..base.arguments import FloatArray
 from ..base.counted import counted
+from ..base.progress import UNTOLD, Steps
 from ..errors import Elements, Finding, InputError
 from ..surface import Surface
 from ..triangles import side_lengths, triangle_areas
@@ -53,17 +54,19 @@ def even_density(surface: Surface, density: FloatArray) -> float | None:
     return float(used.flat[0]) if used.size and used.min() == used.max() else None
 
 
-def at_density(surface: Surface, density: FloatArray, longest: float) -> tuple[DividedSurface, list[Finding]]:
+def at_density(
+    surface: Surface, density: FloatArray, longest: float, steps: Steps = UNTOLD
+) -> tuple[DividedSurface, list[Finding]]:
     """The surface with the metric in which quads of this density are equal, and what there is to say about it. Edges
     longer than this share of the square root of its area are divided, so that the density can vary along them, and has
     places for cones.
 
-    density: (n,) as of `require_density`.
+    density: (n,) as of `require_density`. steps: told of.  Raises Cancelled.
     """
     scale = np.sqrt(density) * (1.0 if surface.scale is None else surface.scale)
     scaled = replace(surface, scale=scale)
-    divided = divide_long_edges(scaled, longest * math.sqrt(_area_about(scaled)))
-    raised = _raised(divided.surface)
+    divided = divide_long_edges(scaled, longest * math.sqrt(_area_about(scaled)), steps)
+    raised = _raised(divided.surface, steps)
     changed = np.flatnonzero(raised[: len(scale)] > math.sqrt(_TOLD) * scale).astype(np.int32)
     findings = []
     if len(changed):
@@ -86,13 +89,14 @@ def _area_about(surface: Surface) -> float:
     )
 
 
-def _raised(surface: Surface) -> FloatArray:
+def _raised(surface: Surface, steps: Steps) -> FloatArray:
     """(n,) the scale, raised as little as possible so that the sides of every triangle keep half of what two of them
     are longer than the third one. Where all scales are the greatest one they do, so that none exceeds it."""
     triangles, sides = surface.triangles, side_lengths(replace(surface, scale=None))
     scale, most = surface.scale.copy(), float(surface.scale[triangles].max())
     active = np.arange(len(triangles))
     while len(active):
+        steps.tell()
         before = scale.copy()
         for corner in range(3):
             order = [corner, (corner + 1) % 3, (corner + 2) % 3]

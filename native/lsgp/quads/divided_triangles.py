@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
+from ..base.progress import UNTOLD, Steps
 from ..errors import Elements
 from ..surface import Surface
 from ..triangles import side_lengths
@@ -50,20 +51,20 @@ class DividedSurface:
         return elements
 
 
-def divide_long_edges(source: Surface, longest: float) -> DividedSurface:
+def divide_long_edges(source: Surface, longest: float, steps: Steps = UNTOLD) -> DividedSurface:
     """Divide edges longer than this in the surface's metric, and others where triangles would get smaller angles
     otherwise: the longest edge of every triangle that is divided is (Rivara 1984). On surfaces of many needles longer
-    edges may stay."""
+    edges may stay.  steps: told of.  Raises Cancelled."""
     count = len(source.triangles)
     most = max(_MOST_TRIANGLES, _MOST_TIMES * count)
     sizes = side_lengths(source).max(axis=1)
     longest = max(longest, float(sizes.sum()) / most)
-    while (found := _divided(source, longest, most)) is None:
+    while (found := _divided(source, longest, most, steps)) is None:
         longest *= _COARSER
     return found
 
 
-def _divided(source: Surface, longest: float, most: int) -> DividedSurface | None:
+def _divided(source: Surface, longest: float, most: int, steps: Steps) -> DividedSurface | None:
     """None where that would be more than so many triangles."""
     positions, triangles = source.positions, source.triangles.astype(np.int64)
     scale = np.ones(len(positions)) if source.scale is None else source.scale
@@ -71,6 +72,7 @@ def _divided(source: Surface, longest: float, most: int) -> DividedSurface | Non
     corners = np.tile(np.eye(3), (len(triangles), 1, 1))
     ends = np.repeat(np.arange(len(positions)), 2).reshape(-1, 2)
     while True:
+        steps.tell()
         ahead = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
         edges, edge = np.unique(np.sort(ahead, axis=2).reshape(-1, 2), axis=0, return_inverse=True)
         edge = edge.reshape(-1, 3)
@@ -88,6 +90,7 @@ def _divided(source: Surface, longest: float, most: int) -> DividedSurface | Non
             lacking = is_divided[edge].any(axis=1) & ~is_divided[edge[rows, first]]
             if not lacking.any():
                 break
+            steps.tell()
             is_divided[edge[rows, first][lacking]] = True
         if len(triangles) + is_divided[edge].sum() > most:
             return None

@@ -16,7 +16,7 @@ from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.counted import counted
 from ..base.equality import EqualByContent
-from ..base.progress import Progress, share_of
+from ..base.progress import Progress, Steps, share_of
 from ..base.short_repr import ShortRepr
 from ..errors import Elements, Finding, InputError, LsgpError, SolverError
 from ..ledger import build_ledger, surface_of_triangles
@@ -36,6 +36,8 @@ from .quad_rows import QuadLines
 
 # Of the time that a remesh takes, where placing the cones, the layouts and extraction before polishing end.
 _PLACED, _LAID_OUT, _EXTRACTED = 0.6, 0.95, 0.97
+# And, where long edges are divided, until then.
+_DIVIDED = 0.02
 # Of the time of placing, where cones for creases are placed, and of that of layouts, where the plain one and then those
 # along creases through these cones end.
 _FOR_FEATURES, _PLAIN, _ALONG = 0.1, 0.2, 0.6
@@ -195,9 +197,9 @@ def _with_density(surface: Surface, density: FloatArray | None, asked: _Asked, p
             asked = replace(asked, size=arguments.positive("size", asked.size) / math.sqrt(even))
         return _remeshed(surface, asked, progress)
     build_ledger(surface, asked.given.cones, asked.given.angles)  # refuses cones that are no vertices of it
-    finer, findings = at_density(surface, density, _LONGEST_EDGE)
+    finer, findings = at_density(surface, density, _LONGEST_EDGE, Steps(share_of(progress, 0.0, _DIVIDED)))
     try:
-        remesh = _remeshed(finer.surface, asked, progress)
+        remesh = _remeshed(finer.surface, asked, share_of(progress, _DIVIDED, 1.0))
     except LsgpError as error:
         error.elements = finer.elements(error.elements)
         raise
@@ -450,12 +452,12 @@ def _is_close(along: Result) -> bool:
     return feature_share(along) >= _NEARLY_ALL and along.distortion.l2_stretch <= _NEARLY_ISOMETRIC
 
 
-def _divided(surface: Surface) -> DividedSurface | None:
+def _divided(surface: Surface, steps: Steps) -> DividedSurface | None:
     """The surface with long edges divided; None if none is long. Cones, and what is between features, need vertices
     inside faces, of which models with flat faces have few."""
     if len(surface.borders):
         return None
-    finer = divide_long_edges(surface, _LONGEST_EDGE * math.sqrt(_area(surface)))
+    finer = divide_long_edges(surface, _LONGEST_EDGE * math.sqrt(_area(surface)), steps)
     return finer if len(finer.triangles) > len(surface.triangles) else None
 
 
@@ -464,9 +466,10 @@ def _gained(
 ) -> tuple[DividedSurface, _Layouts, Result] | None:
     """The surface with long edges divided, and layouts along features on it, if they follow more of them than the one
     before, or as many at less stretch."""
-    finer = _divided(surface)
+    finer = _divided(surface, Steps(share_of(progress, 0.0, _DIVIDED)))
     if finer is None:
         return None
+    progress = share_of(progress, _DIVIDED, 1.0)
     solver = Solver(finer.surface)
     cones = feature_cones(solver, options, share_of(progress, 0.0, _FOR_FEATURES))
     if cones is None:
