@@ -27,7 +27,7 @@ Progress = Callable[[float], bool | None]
 Call = Callable[[Progress | None], object]
 
 # Requests to stop by each way in a cell.
-_MOMENTS = 3
+_MOMENTS = 2
 
 
 @dataclass
