@@ -11,3 +11,9 @@ def off_text(mesh: Mesh) -> str:
     lines += [" ".join(map(repr, position)) for position in mesh.positions.tolist()]
     lines += [" ".join(map(str, [3, *triangle])) for triangle in mesh.triangles.tolist()]
     return "\n".join(lines) + "\n"
+
+
+def obj_text(mesh: Mesh) -> str:
+    lines = [" ".join(["v", *map(repr, position)]) for position in mesh.positions.tolist()]
+    lines += [" ".join(["f", *(str(vertex + 1) for vertex in triangle)]) for triangle in mesh.triangles.tolist()]
+    return "\n".join(lines) + "\n"

@@ -99,7 +99,7 @@ def test_results_have_names_of_their_own() -> None:
     ]
     assets = [Asset(name, Path(name), 1) for name in ("b.ply", "b.ply.obj")]
     with pytest.raises(UsageError, match=r"'b.ply' and 'b.ply.obj' would both be written to 'b.ply.obj'"):
-        require_distinct_results(assets, [output_name(asset.name) for asset in assets])
+        require_distinct_results(Path("out"), assets, [output_name(asset.name) for asset in assets])
 
 
 @pytest.mark.skipif(os.name != "posix", reason="names that are no text are a POSIX matter")

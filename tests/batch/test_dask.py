@@ -13,46 +13,13 @@ from pathlib import Path
 
 import pytest
 from batch_meshes import off_text
+from dask_cluster import Cluster
 from lsgp.cli import main
 from meshes import bumpy_sphere, moebius_strip, renumber
 
 pytest.importorskip("distributed")
 
 COUNT = 20
-
-
-class Cluster:
-    """A scheduler and two workers with a thread each, processes of this machine."""
-
-    def __init__(self, folder: Path) -> None:
-        self.address_file = folder / "scheduler.json"
-        self._folder = folder
-        self._processes = [self._start("scheduler", "--port", "0", "--no-dashboard")]
-        self.workers = [self._start("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(2)]
-        self._processes += self.workers
-        self.address = self._address()
-
-    def _start(self, *arguments: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "distributed.cli.dask_" + arguments[0], *arguments[1:]]
-        command += ["--scheduler-file", str(self.address_file), "--host", "127.0.0.1"]
-        with (self._folder / f"{arguments[0]}.log").open("ab") as log:
-            return subprocess.Popen(command, cwd=self._folder, stdout=log, stderr=log)
-
-    def _address(self) -> str:
-        from distributed import Client
-
-        end = time.monotonic() + 60
-        while not self.address_file.exists():
-            assert time.monotonic() < end, "the scheduler does not start"
-            time.sleep(0.1)
-        with Client(scheduler_file=str(self.address_file)) as client:
-            client.wait_for_workers(2, timeout=60)
-            return client.scheduler.address
-
-    def stop(self) -> None:
-        for process in self._processes:
-            process.kill()
-            process.wait()
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ from pathlib import Path, PurePath, PurePosixPath
 
 from ..base.counted import counted
 from ..io.mesh_files import MESH_SUFFIXES
+from ..io.safe_files import ignores_case, name_by_case
 from ..io.side_files import UsageError
 
 PICTURES = "pictures"
@@ -117,11 +118,17 @@ def picture_name(name: str) -> str:
     return f"{PICTURES}/{name}.png"
 
 
-def require_distinct_results(assets: Iterable[Asset], results: Iterable[str]) -> None:
-    """Raise UsageError where two assets have the same result."""
+def report_name(output: str) -> str:
+    """The name of the report of a result."""
+    return f"{output}.report.json"
+
+
+def require_distinct_results(out: Path, assets: Iterable[Asset], results: Iterable[str]) -> None:
+    """Raise UsageError where two assets have the same result in a folder."""
     owner: dict[str, str] = {}
+    is_one = ignores_case(Path(os.path.realpath(out)))
     for asset, result in zip(assets, results, strict=True):
-        other = owner.setdefault(os.path.normcase(result), asset.name)
+        other = owner.setdefault(name_by_case(result, ignores_case=is_one), asset.name)
         if other != asset.name:
             raise UsageError(f"'{other}' and '{asset.name}' would both be written to '{result}'; rename one of them")
 

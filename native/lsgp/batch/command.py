@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import shlex
 import sys
@@ -14,25 +15,26 @@ from pathlib import Path
 
 from ..base.counted import counted
 from ..io.mesh_formats import readable_suffixes
-from ..io.safe_files import require_inputs_kept
+from ..io.safe_files import require_inputs_kept, require_no_links
 from ..io.side_files import UsageError
 from ..io.standard_streams import complain, say
-from ..io.whole_files import remove_old_partials, write_whole
+from ..io.whole_files import remove_partials, write_whole
 from ..run import exit_codes
-from ..run.named_files import Reads
+from ..run.named_files import Reads, named_files
 from ..run.terminal import ProgressLine
 from .assets import (
     Asset,
     find_assets,
     output_name,
     picture_name,
+    report_name,
     require_distinct_results,
     shard_option,
     skipped_note,
 )
-from .contact_sheet import write_contact_sheet
+from .contact_sheet import page_names, write_contact_sheet
 from .dask_engine import Cluster, run_on_cluster
-from .journal import Journal, read_records
+from .journal import Journal, journal_path, read_records
 from .pool import PYTHON_WORKER, Pool
 from .progress import RunProgress, duration
 from .records import OK, REFUSED, Record
@@ -59,6 +61,7 @@ class Kind:
 MESH_FILES = Kind(readable_suffixes(), output_name, PYTHON_WORKER)
 
 FURTHER_OPTIONS = "--options"
+SUMMARY = "summary.txt"
 
 
 def add_batch_options(batch: argparse.ArgumentParser) -> None:
@@ -157,14 +160,15 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     if found.skipped:
         complain(f"lsgp: warning: {skipped_note(found.skipped)}")
     assets = found.assets
-    require_distinct_results(assets, (kind.output_name(asset.name) for asset in assets))
-    results = ((asset.path, args.out / kind.output_name(asset.name)) for asset in assets)
-    require_inputs_kept(results, in_place=args.in_place)
+    files = _Files.of(args, assets, settings, kind)
+    files.require_others_kept(args)
     args.out.mkdir(parents=True, exist_ok=True)
-    if args.shard is None:
-        remove_old_partials(args.out)
     begin = time.monotonic()
-    with Journal(args.out, args.shard, keep=args.only_missing) as journal:
+    is_resumed = journal_path(args.out, args.shard).exists()
+    with Journal(args.out, args.shard, keep=args.only_missing) as journal, contextlib.ExitStack() as at_end:
+        if args.shard is None or is_resumed:  # of a killed run, whose processes may still have been ending
+            files.remove_partials(journal)
+            at_end.callback(files.remove_partials, journal)
         ended = _ended_before(args, assets, settings, kind) if args.only_missing else {}
         missing = [asset for asset in assets if asset.name not in ended]
         with ProgressLine(sys.stderr) as line:
@@ -179,6 +183,46 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     if args.exit_zero or results == len(records):
         return exit_codes.OK
     return exit_codes.SOME if results else exit_codes.REFUSED
+
+
+@dataclass(frozen=True)
+class _Files:
+    """The files of a run. results: the assets and their results. others: names of the further files, in `out`. read:
+    files beside the assets."""
+
+    out: Path
+    results: list[tuple[Asset, str]]
+    others: list[str]
+    read: list[Path]
+
+    @classmethod
+    def of(cls, args: argparse.Namespace, assets: Sequence[Asset], settings: Settings, kind: Kind) -> _Files:
+        results = [(asset, kind.output_name(asset.name)) for asset in assets]
+        others = [journal_path(args.out, args.shard).name]
+        if args.shard is None:
+            others.append(SUMMARY)
+            others += page_names(len(assets)) if args.pictures else []
+        read = [file.path for file in named_files(args).values()]
+        for asset, output in results:
+            others += [report_name(output)] if settings.reports else []
+            others += [picture_name(asset.name)] if settings.pictures else []
+            read += settings.side_files(Task.of(asset, args.out, output))
+        return cls(args.out, results, others, read)
+
+    def require_others_kept(self, args: argparse.Namespace) -> None:
+        """Raise UsageError where two results are one file, or where something would be written over a file that is
+        read, or through a link in the folder of the results."""
+        outputs = [output for _, output in self.results]
+        require_distinct_results(self.out, (asset for asset, _ in self.results), outputs)
+        results = [(asset.path, self.out / output) for asset, output in self.results]
+        written = [self.out / name for name in self.others]
+        require_inputs_kept(results, self.read, written, in_place=args.in_place)
+        require_no_links(self.out, [*outputs, *self.others])
+
+    def remove_partials(self, journal: Journal) -> None:
+        """Remove what killed processes have left."""
+        own = [output for _, output in self.results] + self.others if journal.is_alone else []
+        remove_partials(self.out, (self.out / name for name in own))
 
 
 def _ended_before(
@@ -231,7 +275,7 @@ def _conclude(args: argparse.Namespace, records: Sequence[Record], worked: int, 
     """Print the summary of a run; for a whole run, not a shard, write it into files as well."""
     table = summary_table(records)
     if args.shard is None:
-        write_whole(args.out / "summary.txt", f"{table}\n".encode("utf-8", "replace"))
+        write_whole(args.out / SUMMARY, f"{table}\n".encode("utf-8", "replace"))
     lines = [table, f"{worked} of them in this run, in {duration(seconds)}"]
     if args.shard is None and args.pictures:
         lines.append(f"contact sheet: {write_contact_sheet(args.out, records)}")

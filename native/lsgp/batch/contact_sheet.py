@@ -30,11 +30,16 @@ figcaption small { color: #666 }
 def write_contact_sheet(out: Path, records: Sequence[Record]) -> Path:
     """Write the pages into the folder of the results, and return the first.  Raises OSError."""
     ordered = sorted(records, key=_order)
-    count = max(1, math.ceil(len(ordered) / PER_PAGE))
-    for page in range(count):
+    names = page_names(len(ordered))
+    for page, name in enumerate(names):
         shown = ordered[page * PER_PAGE : (page + 1) * PER_PAGE]
-        write_whole(out / _page_name(page), "".join(_page(shown, page, count)).encode("utf-8", "replace"))
-    return out / _page_name(0)
+        write_whole(out / name, "".join(_page(shown, page, len(names))).encode("utf-8", "replace"))
+    return out / names[0]
+
+
+def page_names(assets: int) -> list[str]:
+    """The names of the pages for so many assets."""
+    return [_page_name(page) for page in range(max(1, math.ceil(assets / PER_PAGE)))]
 
 
 def _order(record: Record) -> tuple[bool, float, str]:

@@ -2,7 +2,8 @@
 """A run on the workers of a Dask cluster, which needs the files under the same paths and the same version of lsgp.
 
 A chunk is a task of Dask's, which moves it to another worker where one is lost.  In the task it goes to a process of
-its own, as on one machine, so that no mesh can crash a worker of Dask's.
+its own, as on one machine, so that no mesh can crash a worker of Dask's.  When the batch has ended, also by being killed,
+Dask cancels its tasks; the process ends then, so that it writes nothing beside a later run.
 """
 
 from __future__ import annotations
@@ -82,9 +83,16 @@ def run_on_cluster(
 
 
 def work_on_chunk(tasks: Sequence[tuple[Asset, Task]], settings: Settings, seconds: float | None) -> list[Record]:
-    """The task that a Dask worker runs: the chunk, in a process of its own."""
+    """The task that a Dask worker runs: the chunk, in a process of its own, until nobody waits for it any more."""
+    from distributed import get_worker
+
     task_of = dict(tasks)
-    pool = Pool(1, settings, task_of.__getitem__, seconds=seconds)
+    known, key = get_worker().state.tasks, get_worker().get_current_task()
+
+    def is_wanted() -> bool:
+        return key in known and known[key].state != "cancelled"
+
+    pool = Pool(1, settings, task_of.__getitem__, seconds=seconds, is_wanted=is_wanted)
     return list(pool.run(list(task_of)))
 
 

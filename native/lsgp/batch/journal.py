@@ -28,6 +28,7 @@ else:
 # Windows keeps others from reading what is locked: far behind the end of any journal, and within what all file systems
 # have, which Wine asks for.
 _LOCKED_BYTE = 1 << 40
+_OWN_FILE = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 def journal_path(out: Path, shard: Shard | None) -> Path:
@@ -59,16 +60,19 @@ class Journal:
     """Open for writing, locked against other runs.
 
     keep: go on with what is there; otherwise begin anew, and where this is no shard without the shards' journals too.
+    is_alone: whether no other run writes the same results, which storage without locks does not tell.
     Raises OSError, UsageError.
     """
 
     def __init__(self, out: Path, shard: Shard | None, keep: bool) -> None:
-        if shard is None and not keep:
+        self.is_alone = True
+        if shard is None:
             for path in out.glob("journal-*-of-*.jsonl"):
-                os.close(_open_locked(path))
-                path.unlink()
+                os.close(self._open_locked(path))
+                if not keep:
+                    path.unlink()
         self._path = journal_path(out, shard)
-        self._descriptor = _open_locked(self._path)
+        self._descriptor = self._open_locked(self._path)
         os.ftruncate(self._descriptor, _end_of_whole_lines(self._descriptor) if keep else 0)
         os.lseek(self._descriptor, 0, os.SEEK_END)
 
@@ -80,6 +84,24 @@ class Journal:
     ) -> None:
         os.close(self._descriptor)
 
+    def _open_locked(self, path: Path) -> int:
+        """A journal is written where it is, so it must not be a file that has another name elsewhere."""
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | _OWN_FILE, 0o666)
+        try:
+            if os.fstat(descriptor).st_nlink > 1:
+                raise UsageError(f"'{path}' has several hard links; replace it by a copy, or name another folder")
+            _lock(descriptor)
+        except OSError as error:
+            if not _is_taken(error):
+                self.is_alone = False  # storage that knows no locks
+                return descriptor
+            os.close(descriptor)
+            raise UsageError(f"another run is writing to '{path}'; wait for its end or name another folder") from error
+        except UsageError:
+            os.close(descriptor)
+            raise
+        return descriptor
+
     def write(self, record: Record) -> None:
         """Raises OSError that names the journal, when the disk is full for one."""
         line = (json.dumps(finite(record), allow_nan=False) + "\n").encode("ascii")
@@ -88,18 +110,6 @@ class Journal:
                 line = line[os.write(self._descriptor, line) :]
         except OSError as error:
             raise OSError(error.errno, error.strerror, os.fspath(self._path)) from error
-
-
-def _open_locked(path: Path) -> int:
-    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666)
-    try:
-        _lock(descriptor)
-    except OSError as error:
-        if not _is_taken(error):
-            return descriptor  # storage that knows no locks
-        os.close(descriptor)
-        raise UsageError(f"another run is writing to '{path}'; wait for its end or name another folder") from error
-    return descriptor
 
 
 def _is_taken(error: OSError) -> bool:

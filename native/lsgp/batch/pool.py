@@ -20,13 +20,14 @@ from .worker_process import WorkerProcess, WorkersError
 PYTHON_WORKER = (sys.executable, "-P", "-m", "lsgp.batch.worker")
 ASSETS_PER_WORKER = 256
 MOST_FAILED_STARTS = 3
+WANTED_SECONDS = 1.0
 
 
 class Pool:
     """jobs: processes at a time. task_of: makes the task of an asset. command: starts a worker.
 
     seconds: time limit of an asset, None for no limit. assets_per_worker: a process is replaced after this many assets,
-    which bounds what leaks in long-lived processes.
+    which bounds what leaks in long-lived processes. is_wanted: asked every second; the run ends when it says no.
     """
 
     def __init__(
@@ -37,6 +38,7 @@ class Pool:
         command: Sequence[str] = PYTHON_WORKER,
         seconds: float | None = None,
         assets_per_worker: int = ASSETS_PER_WORKER,
+        is_wanted: Callable[[], bool] | None = None,
     ) -> None:
         self._jobs = jobs
         self._settings = settings
@@ -44,6 +46,7 @@ class Pool:
         self._command = command
         self._seconds = seconds
         self._assets_per_worker = assets_per_worker
+        self._is_wanted = is_wanted
         self._workers: list[WorkerProcess] = []
         self._said: SimpleQueue[tuple[WorkerProcess, Record | None]] = SimpleQueue()
         self._failed_starts = 0
@@ -57,7 +60,7 @@ class Pool:
         try:
             while True:
                 self._hand_out(queue)
-                if not self._workers:
+                if not self._workers or (self._is_wanted is not None and not self._is_wanted()):
                     return
                 yield from self._hear(queue)
                 yield from self._end_late_ones(queue)
@@ -85,6 +88,8 @@ class Pool:
     def _hear(self, queue: Queue) -> Iterator[Record]:
         """The records that a worker's next message brings; none when a time limit passes before."""
         left = [worker.seconds_left(self._seconds) for worker in self._workers]
+        if self._is_wanted is not None:
+            left.append(WANTED_SECONDS)
         first = min((seconds for seconds in left if seconds is not None), default=None)
         try:
             worker, said = self._said.get(timeout=None if first is None else max(0.0, first))

@@ -14,7 +14,7 @@ from typing import Any
 from .. import InputError, __version__
 from ..io.side_files import UsageError
 from ..run.feature_options import FeatureKinds
-from ..run.named_files import names_of_read_files
+from ..run.named_files import read_files
 from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
@@ -28,8 +28,9 @@ def _unwrap_parser() -> argparse.ArgumentParser:
     return parser
 
 
-# Options that name a file beside each mesh.
-SIDE_FILES = tuple(names_of_read_files(_unwrap_parser()))
+# The options that name a file beside each mesh.
+_UNWRAP_FILES = read_files(_unwrap_parser())
+SIDE_FILES = tuple(action.dest for action in _UNWRAP_FILES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +66,9 @@ class Settings:
             library_options(args)
         except InputError as error:
             raise UsageError(f"{error} ({error.code})") from error
-        for name in SIDE_FILES:
-            if isinstance(options[name], str):
-                options[name] = _whole_path(name, options[name])
+        for action in _UNWRAP_FILES:
+            if action.path_in(options[action.dest]) is not None:
+                options[action.dest] = _whole_path(action.dest, options[action.dest])
         if isinstance(options["features"], FeatureKinds):
             options["features"] = asdict(options["features"])
         return cls(options, args.pictures, args.reports, args.memory_limit)
@@ -81,6 +82,11 @@ class Settings:
             own["features"] = FeatureKinds(**features)
         return self.options | own
 
+    def side_files(self, task: Task) -> list[Path]:
+        """The files that the options name for this asset."""
+        values = self.options_for(task)
+        return [path for action in _UNWRAP_FILES if (path := action.path_in(values[action.dest])) is not None]
+
     def digest(self) -> str:
         """Identifies options and version, so that results made with others are recognized."""
         content = json.dumps([__version__, self.options], sort_keys=True)
@@ -88,8 +94,7 @@ class Settings:
 
 
 def _whole_path(name: str, text: str) -> str:
-    is_file = name != "cones" or not (text == "auto" or text.startswith("auto:"))
-    if text.startswith(MESH) or not is_file:
+    if text.startswith(MESH):
         return text
     path = os.path.abspath(text)
     if MESH not in path and not os.path.isfile(path):

@@ -14,6 +14,7 @@ from ..run import report as reports
 from ..run.exit_codes import describe
 from ..run.unwrap_file import Run, out_of_memory, unwrap_file
 from ..run.unwrap_options import texture_size
+from .assets import report_name
 from .pictures import write_picture
 from .records import FAILED, REFUSED, Record, ending, record_of
 from .tasks import Settings, Task
@@ -55,7 +56,7 @@ def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     result = unwrap_file(args, run, makes_folder=True)
     report = reports.unwrap_report(result, run, texture_size(args))
     if settings.reports:
-        write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
+        write_whole(Path(task.out, report_name(task.output)), reports.to_json(report))
     record = record_of(report) | {"output": task.output}
     if settings.pictures:
         write_picture(Path(task.out, task.picture), run.surface, result)

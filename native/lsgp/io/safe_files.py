@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import errno
+import filecmp
 import os
 import stat
 import sys
@@ -67,8 +68,8 @@ def _place(path: str | os.PathLike[str]) -> tuple[str, str]:
 
 
 def require_separate(source: Path, target: Path, *, in_place: bool) -> None:
-    """Raise UsageError where the output would overwrite the input without a request, while a backup of it exists, or
-    where it is one of several hard links, the others of which would keep the old content."""
+    """Raise UsageError where the output would overwrite the input without a request, while there is a backup with
+    other content, or where it is one of several hard links, the others of which would keep the old content."""
     if not is_same_file(source, target):
         return
     if not in_place:
@@ -76,11 +77,11 @@ def require_separate(source: Path, target: Path, *, in_place: bool) -> None:
             f"the output '{target}' is the input '{source}' itself; name another file, or write over it with --in-place"
         )
     backup = backup_of(Path(os.path.realpath(target)))
-    if backup.exists():
+    if backup.exists() and not is_spent_backup(backup, target):
         raise UsageError(
             f"there is a backup '{backup}' of a run that was killed; compare it with the file, and remove it"
         )
-    links = os.stat(target).st_nlink
+    links = os.stat(target).st_nlink - is_same_file(backup, target)
     if links > 1:
         raise UsageError(
             f"'{target}' is one of {links} hard links to a file; it is replaced as a whole, so the others would keep "
@@ -93,14 +94,28 @@ def backup_of(path: Path) -> Path:
     return path.with_name(path.name + BACKUP)
 
 
-def require_inputs_kept(results: Iterable[tuple[Path, Path]], *, in_place: bool) -> None:
-    """Raise UsageError where a result would be written over an input: over its own without having been asked to, or
-    over that of another.
+def is_spent_backup(backup: Path, target: Path) -> bool:
+    """Whether a backup, which exists, is of a run that was killed before it replaced the file."""
+    try:
+        return os.path.samefile(backup, target) or filecmp.cmp(backup, target, shallow=False)
+    except OSError:
+        return False
 
-    results: the input and the output of each asset.
+
+def require_inputs_kept(
+    results: Iterable[tuple[Path, Path]], read: Iterable[Path], written: Iterable[Path], *, in_place: bool
+) -> None:
+    """Raise UsageError where a result would be written over an input: over its own without having been asked to, or
+    over that of another; and where anything would be written over a file that is read.
+
+    results: the input and the output of each asset. read, written: the other files, which need not be there.
     """
     pairs = list(results)
-    owners = {identity: source for source, _ in pairs if (identity := _identity(source)) is not None}
+    owners = {}
+    for path in [*read, *(source for source, _ in pairs)]:
+        identity = _identity(path)
+        if identity is not None:
+            owners[identity] = path
     for source, target in pairs:
         identity = _identity(target)
         owner = None if identity is None else owners.get(identity)
@@ -109,6 +124,29 @@ def require_inputs_kept(results: Iterable[tuple[Path, Path]], *, in_place: bool)
         if _identity(source) != identity:
             raise UsageError(f"the result of '{source}' would be written over '{owner}'; name another folder")
         require_separate(source, target, in_place=in_place)
+    for path in written:
+        identity = _identity(path)
+        if identity in owners:
+            raise UsageError(f"'{path}' would be written over '{owners[identity]}', which is read; name another folder")
+
+
+def require_no_links(folder: Path, names: Iterable[str]) -> None:
+    """Raise UsageError where a file or folder of these relative names is a link, through which something elsewhere
+    would be written; the folder itself may be one."""
+    root = os.path.realpath(folder)
+    seen = {root}
+    for name in names:
+        whole = os.path.join(root, os.path.normpath(name))
+        parent = os.path.dirname(whole)
+        if parent not in seen and os.path.normcase(os.path.realpath(parent)) != os.path.normcase(parent):
+            whole = parent
+        elif not os.path.islink(whole):
+            seen.add(parent)
+            continue
+        raise UsageError(
+            f"'{folder / os.path.relpath(whole, root)}' is or lies in a link, through which results would be written "
+            "elsewhere; remove the link, or name another folder"
+        )
 
 
 def require_writable_kind(path: str | os.PathLike[str]) -> None:

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import hashlib
 import os
 import secrets
 import shutil
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from .safe_files import backup_of, is_standard_stream, require_writable_kind
+from .safe_files import backup_of, is_spent_backup, is_standard_stream, require_writable_kind
 from .standard_streams import write_to_standard_output
 
 # Pattern of temporary files, which remain where a process is killed. A suffix may follow.
@@ -90,7 +91,7 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
     keep_backup: what was there stays as well, as `backup_of` it, until the new file is on the disk and in its
     place.  Raises OSError; FileExistsError where there is such a backup already.
     """
-    partial = target.with_name(PARTIAL.replace("*", secrets.token_hex(6)) + suffix)
+    partial = target.with_name(PARTIAL.replace("*", f"{_tag(target)}-{secrets.token_hex(6)}") + suffix)
     backup = None
     try:
         yield partial
@@ -107,6 +108,11 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
     finally:
         if backup is not None:  # the target is the old file or the new one, as a whole
             backup.unlink()
+
+
+def _tag(target: Path) -> str:
+    """In the names of the temporary files of a target."""
+    return hashlib.blake2b(os.fsencode(target.name), digest_size=6).hexdigest()
 
 
 def _replace(partial: Path, target: Path) -> None:
@@ -129,6 +135,8 @@ def _make_backup(target: Path, partial: Path) -> Path:
     """Back the file up by a hard link, or a copy where there are no links, once the new file is on the disk."""
     _put_on_disk(partial)
     backup = backup_of(target)
+    if backup.exists() and is_spent_backup(backup, target):
+        backup.unlink()
     if backup.exists():
         raise FileExistsError(
             errno.EEXIST, "A backup of a run that was killed is there; compare it with the file and remove it", backup
@@ -153,9 +161,15 @@ def _put_on_disk(path: Path) -> None:
         os.fsync(file.fileno())
 
 
-def remove_old_partials(folder: Path) -> None:
-    """Remove, at any depth, temporary files of processes that were killed an hour ago or more."""
+def remove_partials(folder: Path, own: Iterable[Path] = ()) -> None:
+    """Remove, at any depth, temporary files of processes that were killed an hour ago or more, and all of certain
+    targets.
+
+    own: these targets, in the folder, which no other process writes any more.
+    """
+    tags = {(path.parent, _tag(path)) for path in own}
     for partial in folder.rglob(f"{PARTIAL}*"):
         with contextlib.suppress(OSError):
-            if time.time() - partial.stat().st_mtime > ABANDONED_SECONDS:
+            is_own = (partial.parent, partial.name.split("-")[1]) in tags
+            if is_own or time.time() - partial.stat().st_mtime > ABANDONED_SECONDS:
                 partial.unlink()

@@ -62,9 +62,9 @@ def named_files(args: argparse.Namespace) -> dict[str, NamedFile]:
     return dict(vars(args).get("named_files", {}))
 
 
-def names_of_read_files(parser: argparse.ArgumentParser) -> list[str]:
-    """The arguments of a parser that name files to read, by the names of their values."""
-    return [action.dest for action in parser._actions if isinstance(action, Reads) and not action.is_written]
+def read_files(parser: argparse.ArgumentParser) -> list[Reads]:
+    """The arguments of a parser that name files to read."""
+    return [action for action in parser._actions if isinstance(action, Reads) and not action.is_written]
 
 
 def require_separate_files(files: Iterable[NamedFile]) -> None:
