@@ -84,9 +84,13 @@ def test_warnings_of_one_kind_are_added_up(batch, lines_in, tmp_path: Path) -> N
     strip = moebius_strip()
     both = merge([grid(3, 3), strip, strip])
     (tmp_path / "both.off").write_text(off_text(both))
-    assert batch("both.off", "--out", "out", "--no-pictures").returncode == 0
+    assert batch("both.off", "--out", "out", "--no-pictures").returncode == 4
     (line,) = lines_in(tmp_path / "out" / "journal.jsonl")
     assert line["warnings"]["COMPONENT_SKIPPED"] == 2 * len(strip.triangles)
+    assert (line["status"], line["missing_faces"]) == ("ok", 2 * len(strip.triangles))
+    summary = (tmp_path / "out" / "summary.txt").read_text()
+    assert f"most {line['missing_area_percent']:.3g} % of the area: both.off" in summary
+    assert "with faces left out" in summary
 
 
 WRONG_USAGE = {

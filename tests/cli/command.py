@@ -18,6 +18,7 @@ REPORT_KEYS = [
         "seams",
         "seamless",
         "features",
+        "missing",
         "islands",
         "flipped",
         "wrong_angle_sums",

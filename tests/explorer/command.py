@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from .steps import Step
 
 SECONDS = 60
-RESULT, USAGE, REFUSED = 0, 2, 3
+RESULT, USAGE, REFUSED, INCOMPLETE = 0, 2, 3, 4
 
 
 def command_faults(
@@ -58,7 +58,7 @@ def command_faults(
         arguments = _files_and_arguments(folder, surface, cones, angles, options, step)
         code, told = _run(folder, arguments, separate=step["process"])
         faults = [f"a traceback: {told[-300:]}"] if "Traceback" in told else []
-        if code not in (RESULT, USAGE, REFUSED):
+        if code not in (RESULT, USAGE, REFUSED, INCOMPLETE):
             return f"exit {code}", [*faults, f"exit code {code}: {told[-300:]}"]
         # The command wants angles where they are to be chosen by hand; from Python those that lack are automatic.
         wants_angles = options.prescription == "manual" and not (step["cones"] == "given" and angles)
@@ -66,7 +66,7 @@ def command_faults(
             faults.append(f"wrong usage: {told[-300:]}")
         if code != USAGE and not (code == REFUSED and wants_angles):
             faults += _compared(folder, surface, cones, angles, options, step, code)
-        if code == RESULT and step["command"] == "unwrap":
+        if code in (RESULT, INCOMPLETE) and step["command"] == "unwrap":
             measured, told = _run(folder, ["measure", "out.obj", "--report", "measured.json"], separate=False)
             if measured != RESULT:
                 faults.append(f"what was written cannot be measured: {told[-300:]}")

@@ -37,7 +37,7 @@ from .dask_engine import Cluster, run_on_cluster
 from .journal import Journal, journal_path, read_records
 from .pool import PYTHON_WORKER, Pool
 from .progress import RunProgress, duration
-from .records import OK, REFUSED, Record
+from .records import OK, REFUSED, Record, is_whole
 from .summary import summary_table
 from .tasks import Settings, Task
 from .worker_process import WorkersError
@@ -179,10 +179,9 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
                 show(record)
     records = [ended[asset.name] for asset in assets]
     _conclude(args, records, len(missing), time.monotonic() - begin)
-    results = sum(record["status"] == OK for record in records)
-    if args.exit_zero or results == len(records):
+    if args.exit_zero or all(map(is_whole, records)):
         return exit_codes.OK
-    return exit_codes.SOME if results else exit_codes.REFUSED
+    return exit_codes.SOME if any(record["status"] == OK for record in records) else exit_codes.REFUSED
 
 
 @dataclass(frozen=True)

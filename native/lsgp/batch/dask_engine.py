@@ -2,8 +2,8 @@
 """A run on the workers of a Dask cluster, which needs the files under the same paths and the same version of lsgp.
 
 A chunk is a task of Dask's, which moves it to another worker where one is lost.  In the task it goes to a process of
-its own, as on one machine, so that no mesh can crash a worker of Dask's.  When the batch has ended, also by being killed,
-Dask cancels its tasks; the process ends then, so that it writes nothing beside a later run.
+its own, as on one machine, so that no mesh can crash a worker of Dask's.  When the batch has ended, also by being
+killed, Dask cancels its tasks; the process ends then, so that it writes nothing beside a later run.
 """
 
 from __future__ import annotations

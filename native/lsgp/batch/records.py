@@ -23,6 +23,8 @@ EMPTY: Record = {
     "picture": None,
     "warnings": {},
     "triangles": None,
+    "missing_faces": None,
+    "missing_area_percent": None,
     "cones": None,
     "islands": None,
     "distortion": None,
@@ -47,7 +49,14 @@ def record_of(report: Report) -> Record:
     for warning in report["warnings"]:
         warnings[warning["code"]] += len(warning["elements"]["indices"])
     figures = {key: report[key] for key in _FROM_REPORT}
+    missing = report["missing"] or {"faces": [], "area_percent": 0.0}
+    figures |= {"missing_faces": len(missing["faces"]), "missing_area_percent": missing["area_percent"]}
     return EMPTY | figures | {"warnings": dict(warnings), "cones": len(report["cones"])}
+
+
+def is_whole(record: Record) -> bool:
+    """Whether there is a result, with coordinates at all faces that can have some."""
+    return record["status"] == OK and not record["missing_faces"]
 
 
 def is_record(value: Any) -> bool:
@@ -90,7 +99,7 @@ def _is_counts(value: Any) -> bool:
 
 _ALWAYS = (
     (_is_text, ("asset", "options")),
-    (_or_null(_is_figure), ("seconds", "cpu_seconds", "peak_memory_mb")),
+    (_or_null(_is_figure), ("seconds", "cpu_seconds", "peak_memory_mb", "missing_faces", "missing_area_percent")),
     (_or_null(_is_distortion), ("distortion",)),
 )
 _OF_RESULTS = {

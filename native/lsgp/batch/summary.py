@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ..base.counted import counted
 from .progress import duration
-from .records import FAILED, OK, REFUSED, Record
+from .records import FAILED, OK, REFUSED, Record, is_whole
 
 
 def summary_table(records: Sequence[Record]) -> str:
@@ -18,6 +18,7 @@ def summary_table(records: Sequence[Record]) -> str:
     rows = [("results", len(results), "")]
     warned = Counter(code for record in results for code in record["warnings"])
     rows += [(f"  with {code}", count, "") for code, count in sorted(warned.items())]
+    rows += _incomplete(results)
     for status in (REFUSED, FAILED):
         ended = [record for record in records if record["status"] == status]
         rows.append((status, len(ended), ""))
@@ -28,6 +29,15 @@ def summary_table(records: Sequence[Record]) -> str:
     lines = [counted(len(records), "asset")]
     lines += [f"{label:<28}{value:>12}  {note}".rstrip() for label, value, note in rows]
     return "\n".join(lines)
+
+
+def _incomplete(results: Sequence[Record]) -> list[tuple[str, int, str]]:
+    """Results that leave out faces, and the one that leaves out most of its area."""
+    incomplete = [record for record in results if not is_whole(record)]
+    if not incomplete:
+        return []
+    percent, name = max((record["missing_area_percent"] or 0.0, record["asset"]) for record in incomplete)
+    return [("  with faces left out", len(incomplete), f"most {percent:.3g} % of the area: {name}")]
 
 
 def _figures(records: Sequence[Record], results: Sequence[Record]) -> list[tuple[str, str | int, str]]:

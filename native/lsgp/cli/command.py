@@ -28,7 +28,7 @@ from ..io.whole_files import write_whole
 from ..layouts.texels import texel_density
 from ..quads.quad_mesh import quad_quality
 from ..run import report as reports
-from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
+from ..run.exit_codes import OF_A_RUN, OK, REFUSED, SOME, USAGE, ended, flushed, listed
 from ..run.named_files import Reads, Writes
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
@@ -223,7 +223,7 @@ def _reported(args: argparse.Namespace) -> int:
     run = Run()
     try:
         report, text = args.make(args, run)
-        code = OK
+        code = SOME if run.missing is not None and len(run.missing.faces) else OK
     except LsgpError as error:
         report, text, code = _refusal(error, run), None, REFUSED
     except MemoryError:
@@ -251,6 +251,7 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
         f"{counted(len(result.cones), 'cone')}, {counted(reports.island_count(result.island), 'island')}",
         reports.quality_table(result, run.texels, run.packed),
+        *reports.missing_lines(run.missing),
         *reports.missed_strokes(result, run),
     ]
     if result.seamless is not None:

@@ -26,7 +26,7 @@ from .mesh_ply_write import format_ply
 from .mesh_stl import read_stl
 from .mesh_text import quoted
 from .polygons import PolygonMesh, Triangulation, triangulate
-from .repeated_corners import without_repeated_corners
+from .repeated_corners import not_covered, without_repeated_corners
 from .safe_files import is_same_file, require_separate
 from .side_files import UsageError, read_regular
 from .whole_files import write_whole
@@ -161,8 +161,14 @@ def parse_mesh(
 
 def triangulated(mesh: PolygonMesh) -> tuple[Triangulation, tuple[Finding, ...]]:
     """The triangles of the polygons that can be used, and what was left out.  Raises InputError: BAD_FACE."""
-    usable = without_repeated_corners(mesh)
-    return usable.in_whole_mesh(triangulate(usable.mesh)), usable.findings
+    left_out = np.empty(0, np.int32)
+    while True:
+        usable = without_repeated_corners(mesh, left_out)
+        triangulation = triangulate(usable.mesh)
+        uncovered = usable.places_of(not_covered(usable.mesh, triangulation))
+        if not len(uncovered):
+            return usable.in_whole_mesh(triangulation), usable.findings
+        left_out = np.concatenate([left_out, uncovered])
 
 
 def format_mesh(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Faces that name a vertex twice or have fewer than three corners: usable ones are simplified and the others left out,
-instead of refusing the file."""
+instead of refusing the file. A face with holes, which edges to and fro join to its outline, is usable as it is."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 from ..base.counted import counted
 from ..errors import Elements, Finding, InputError
 from .polygons import PolygonMesh, Triangulation
+
+_NONE = np.empty(0, np.int32)
+# Of a triangle's area to that of its face.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,10 @@ class Usable:
     places: Places | None = None
     findings: tuple[Finding, ...] = ()
 
+    def places_of(self, polygons: NDArray[np.intp]) -> NDArray[np.int32]:
+        """Polygons of the part as they are numbered in the whole mesh."""
+        return polygons.astype(np.int32) if self.places is None else self.places.polygon[polygons]
+
     def in_whole_mesh(self, triangulation: Triangulation) -> Triangulation:
         """A triangulation of the part with the indices of the whole mesh."""
         if self.places is None:
@@ -48,11 +56,11 @@ class Usable:
         )
 
 
-def without_repeated_corners(mesh: PolygonMesh) -> Usable:
-    """Of corners that name the vertex of the one before the first stays; a face that has less than three then, or names
-    a vertex twice all the same, is left out, for no shorter face has the same shape.
+def without_repeated_corners(mesh: PolygonMesh, others: NDArray[np.int32] = _NONE) -> Usable:
+    """Of corners that name the vertex of the one before the first stays; a face that has less than three then is left
+    out.
 
-    Raises InputError: BAD_FACE where no face is left.
+    others: faces that are left out as well.  Raises InputError: BAD_FACE where no face is left.
     """
     owner = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
     follows = np.arange(-1, len(mesh.corners) - 1)
@@ -60,7 +68,7 @@ def without_repeated_corners(mesh: PolygonMesh) -> Usable:
     is_repeat = mesh.corners == mesh.corners[follows]
     sizes = np.bincount(owner[~is_repeat], minlength=len(mesh.sizes))
     left_out = sizes < 3
-    left_out[_touching_themselves(mesh, owner, ~is_repeat & (sizes > 3)[owner])] = True
+    left_out[others] = True
     if not (is_repeat.any() or left_out.any()):
         return Usable(mesh)
 
@@ -84,14 +92,32 @@ def without_repeated_corners(mesh: PolygonMesh) -> Usable:
     return Usable(part, places, _findings(owner, repeats, left_out))
 
 
-def _touching_themselves(
-    mesh: PolygonMesh, owner: NDArray[np.int64], considered: NDArray[np.bool_]
-) -> NDArray[np.int64]:
-    """The polygons that name a vertex at two of the corners that are considered."""
-    corners = np.flatnonzero(considered)
+def not_covered(mesh: PolygonMesh, triangulation: Triangulation) -> NDArray[np.intp]:
+    """The polygons that name a vertex twice and are no region with its holes joined to its outline, each by an edge to
+    and from it: some of their triangles name a vertex twice or face the other way."""
+    touching = _touching_themselves(mesh)
+    if not len(touching):
+        return touching
+    mine = np.flatnonzero(np.isin(triangulation.polygon, touching))
+    polygon, vertices = triangulation.polygon[mine], triangulation.triangles[mine]
+    a, b, c = mesh.positions[vertices].transpose(1, 0, 2)
+    with np.errstate(all="ignore"):  # coordinates that overflow are refused by the library, by name
+        normal = np.cross(b - a, c - a)
+        whole = np.zeros((len(mesh.sizes), 3))
+        np.add.at(whole, polygon, normal)
+        toward = (normal * whole[polygon]).sum(axis=1)
+        covers = toward >= -ROUNDING * (whole[polygon] ** 2).sum(axis=1)
+    covers &= (vertices != np.roll(vertices, 1, axis=1)).all(axis=1) & whole[polygon].any(axis=1)
+    return np.unique(polygon[~covers])
+
+
+def _touching_themselves(mesh: PolygonMesh) -> NDArray[np.intp]:
+    """The polygons that name a vertex at two corners."""
+    owner = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
+    corners = np.flatnonzero((mesh.sizes > 3)[owner])
     order = corners[np.lexsort((mesh.corners[corners], owner[corners]))]
     again = (np.diff(mesh.corners[order]) == 0) & (np.diff(owner[order]) == 0)
-    return owner[order][1:][again]
+    return np.unique(owner[order][1:][again])
 
 
 def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: NDArray[np.bool_]) -> tuple[Finding, ...]:
@@ -110,8 +136,9 @@ def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: ND
         findings.append(
             Finding(
                 "FACES_LEFT_OUT",
-                f"{counted(len(faces), 'face was', 'faces were')} left out and got no texture coordinates: a vertex is "
-                "named twice, or there are fewer than three. Delete such faces.",
+                f"{counted(len(faces), 'face was', 'faces were')} left out and got no texture coordinates: there are "
+                "fewer than three vertices, or one is named twice and the face is no region with holes. Delete such "
+                "faces.",
                 Elements("faces", faces),
             )
         )

@@ -17,13 +17,14 @@ OF_A_RUN = {
     OK: "a result, with warnings or not",
     USAGE: "wrong usage, or a file that is missing or cannot be written",
     REFUSED: "the input was refused, or with --strict its result",
+    SOME: "a result that leaves out faces that have an area",
     INTERRUPTED: "interrupted",
 }
 OF_A_BATCH = {
-    OK: "all assets have a result",
+    OK: "all assets have a whole result",
     USAGE: "wrong usage, or a list, folder, journal or summary that is missing or cannot be written",
     REFUSED: "no asset has a result",
-    SOME: "some assets have a result",
+    SOME: "some assets have a result, or a result leaves out faces that have an area",
     INTERRUPTED: "interrupted",
 }
 

@@ -90,7 +90,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     with run.stage("place_cones"):
         placement = place_cones(surface, kept, angles, seams=args.seams, threads=args.threads, **how, progress=progress)
     if args.strict:
-        require_flawless(placement.warnings)
+        require_flawless([*file.findings, *placement.warnings])
     with run.stage("write_file"):
         write_output(args.output, _cones_file(args.input, placement))
     return replace(placement, warnings=file.told(placement.warnings))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.counted import counted
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
@@ -19,6 +20,7 @@ from ..layouts.texels import TexelDensity
 from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh
 from ..results import FeatureReport, Measurement, Placement, Result
+from .missing_faces import MissingFaces
 from .unwrap_file import Packed, Run
 
 Report = dict[str, Any]
@@ -41,6 +43,7 @@ EMPTY: Report = {
     "seams": None,
     "seamless": None,
     "features": None,
+    "missing": None,
     "islands": None,
     "flipped": None,
     "wrong_angle_sums": None,
@@ -105,6 +108,7 @@ def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
         "seams": asdict(result.seams),
         "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
         "features": None if result.features is None else _feature_figures(result.features),
+        "missing": None if run.missing is None else _missing_figures(run.missing),
         "islands": island_count(result.island),
         "flipped": len(result.flipped),
         "wrong_angle_sums": len(result.wrong_angle_sums),
@@ -116,6 +120,30 @@ def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
         "packing": None if run.packed is None else asdict(run.packed),
         "stage_seconds": dict(run.stage_seconds),
     }
+
+
+def _missing_figures(missing: MissingFaces) -> Report:
+    return {
+        "faces": missing.faces.tolist(),
+        "area_percent": missing.area_percent,
+        "impossible": missing.impossible.tolist(),
+        "impossible_area_percent": missing.impossible_area_percent,
+    }
+
+
+def missing_lines(missing: MissingFaces | None) -> list[str]:
+    """Lines on faces without coordinates: which ones, and how much of the area they are."""
+    if missing is None:
+        return []
+    kinds = (
+        ("", missing.faces, missing.area_percent),
+        (" and without triangles or area", missing.impossible, missing.impossible_area_percent),
+    )
+    return [
+        f"{counted(len(faces), 'face')} without coordinates{what}, {percent:.3g} % of the area{where(named, None)}"
+        for what, faces, percent in kinds
+        if (named := Elements("faces", faces)) and len(faces)
+    ]
 
 
 def _feature_figures(features: FeatureReport) -> Report:

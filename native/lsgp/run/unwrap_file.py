@@ -43,6 +43,7 @@ from ..surface import Surface
 from ..triangles import uv_area
 from .direction_options import Strokes, load_directions, strokes_of
 from .feature_options import features_of
+from .missing_faces import MissingFaces, missing_faces
 from .unwrap_options import (
     cone_count,
     cones_file,
@@ -64,6 +65,7 @@ FLAWS = frozenset(
         "INEXACT_SEAMS",
         "ISLANDS_TINY",
         "COMPONENT_SKIPPED",
+        "FACES_LEFT_OUT",
         "PLACEMENT_NOT_REACHED",
     }
 )
@@ -89,6 +91,7 @@ class Run:
     strokes: Strokes | None = None
     packed: Packed | None = None
     texels: TexelDensity | None = None
+    missing: MissingFaces | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
@@ -142,7 +145,8 @@ def unwrap_file(
     if args.texel_density is not None:
         run.texels = texel_density(run.surface, result.corner_uv, args.texture_size)
     if args.strict:
-        require_flawless(result.warnings)
+        require_flawless([*file.findings, *result.warnings])
+    run.missing = missing_faces(file, result.solved)
     with run.stage("write_file"):
         data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
         if makes_folder and target is not None:

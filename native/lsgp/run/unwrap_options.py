@@ -334,8 +334,8 @@ def add_strict_option(command: argparse.ArgumentParser, result: str, further_fla
         "--strict",
         action="store_true",
         help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, "
-        f"{further_flaws}components left out, or cones that miss the target, instead of warning: exit code 3, and no "
-        "file but the report",
+        f"{further_flaws}components or faces left out, or cones that miss the target, instead of warning: exit code 3, "
+        "and no file but the report",
     )
 
 

@@ -263,7 +263,7 @@ def test_strict_refuses_parts_left_out_with_given_cones(lsgp, ball_files: Path) 
     (ball_files / "both.obj").write_text(obj_text(np.concatenate([ball.positions, strip.positions + 5]), faces))
     unwrap = ["unwrap", "both.obj", "--cones", "placed.json"]
     loose = lsgp(*unwrap, "-o", "out.obj")
-    assert loose.code == 0 and "COMPONENT_SKIPPED" in loose.err
+    assert loose.code == 4 and "COMPONENT_SKIPPED" in loose.err
     strict = lsgp(*unwrap, "-o", "strict.obj", "--strict")
     assert strict.code == 3 and "refused: COMPONENT_SKIPPED" in strict.err
     assert not (ball_files / "strict.obj").exists()

@@ -99,7 +99,7 @@ def test_component_that_cannot_be_solved_keeps_no_vt_and_is_named(lsgp, tmp_path
     (tmp_path / "in.obj").write_text(obj_text(np.concatenate([opened, closed + 9]), faces))
     (tmp_path / "none.json").write_text('{"cones": []}')
     done = lsgp("unwrap", "in.obj", "-o", "out.obj", "--cones", "none.json", "--report", "report.json")
-    assert done.code == 0
+    assert done.code == 4
     unsolved = np.isnan(uv_of(tmp_path / "out.obj")).any(axis=1)
     polygon = np.repeat(np.arange(len(faces)), [len(face) for face in faces])
     assert (unsolved == (polygon >= len(opened_faces))).all()
@@ -109,6 +109,34 @@ def test_component_that_cannot_be_solved_keeps_no_vt_and_is_named(lsgp, tmp_path
     assert report["triangles"] == sum(len(face) - 2 for face in faces)
     assert "COMPONENT_SKIPPED" in done.err
     assert f"faces {len(opened_faces)}, " in done.err
+    left_out = np.arange(len(opened_faces), len(faces))
+    share = 100 * area_of(closed, closed_faces) / (area_of(closed, closed_faces) + area_of(opened, opened_faces))
+    assert report["missing"]["faces"] == left_out.tolist() and report["missing"]["impossible"] == []
+    assert report["missing"]["area_percent"] == pytest.approx(share, rel=1e-3)  # quads that are not flat
+    assert f"{len(left_out)} faces without coordinates, 58.8 % of the area (faces {left_out[0]}, " in done.out
+
+
+def area_of(positions: np.ndarray, faces: list[list[int]]) -> float:
+    return sum(
+        0.5 * float(np.linalg.norm(np.cross(positions[b] - positions[a], positions[c] - positions[a])))
+        for a, *others in faces
+        for b, c in pairwise(others)
+    )
+
+
+def test_a_result_without_faces_that_have_no_area_is_whole(lsgp, tmp_path: Path) -> None:
+    """A component that is a line cannot be unfolded."""
+    positions, faces = patch()
+    n = len(positions)
+    positions = np.concatenate([positions, [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [3.0, 0.0, 5.0]]])
+    (tmp_path / "in.obj").write_text(obj_text(positions, [*faces, [n, n + 1, n + 2]]))
+    done = lsgp("unwrap", "in.obj", "-o", "out.obj", "--report", "report.json")
+    assert np.isnan(uv_of(tmp_path / "out.obj"))[-3:].all()
+    assert done.code == 0
+    missing = done.report()["missing"]
+    assert (missing["faces"], missing["area_percent"]) == ([], 0.0)
+    assert (missing["impossible"], missing["impossible_area_percent"]) == ([len(faces)], 0.0)
+    assert "1 face without coordinates and without triangles or area, 0 % of the area" in done.out
 
 
 # --- cones and angles -----------------------------------------------------------------------------------------------
