@@ -21,17 +21,22 @@ from ..io.side_files import UsageError
 
 @dataclass(frozen=True, slots=True)
 class NamedFile:
-    """A file, and the argument that names it as users know that: an option, or the placeholder of a positional one."""
+    """A file, and the argument that names it as users know that: an option, or the placeholder of a positional one.
+
+    completed_by: the argument that may write it, because it keeps what is there.
+    """
 
     argument: str
     path: Path
     is_written: bool
+    completed_by: str | None = None
 
 
 class Reads(argparse.Action):
     """Stores the value of an argument that names a file to read, or keeps its own meaning for some values."""
 
     is_written = False
+    completed_by: str | None = None
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option: str | None = None
@@ -42,7 +47,7 @@ class Reads(argparse.Action):
         path = self.path_in(values)
         if path is not None:
             name = self.option_strings[-1] if self.option_strings else str(self.metavar)
-            files[self.dest] = NamedFile(name, path, self.is_written)
+            files[self.dest] = NamedFile(name, path, self.is_written, self.completed_by)
         namespace.named_files = files
 
     @staticmethod
@@ -71,6 +76,8 @@ def require_separate_files(files: Iterable[NamedFile]) -> None:
     """Raise UsageError where two arguments name one file, by whatever paths, and one of them writes it; a device, as
     the null device, may have several writers."""
     for one, other in combinations(files, 2):
+        if one.argument == other.completed_by or other.argument == one.completed_by:
+            continue
         is_device = one.path.exists() and not one.path.is_file()
         if (one.is_written or other.is_written) and not is_device and is_same_file(one.path, other.path):
             written, named = (one, other) if one.is_written else (other, one)

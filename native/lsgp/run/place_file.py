@@ -43,7 +43,7 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
         "(default: 1.05)",
     )
     cones.add_argument(
-        "--keep", metavar="FILE.json", action=Reads, help="a cones file to complete; its cone_angles are kept"
+        "--keep", metavar="FILE.json", action=_Completes, help="a cones file to complete; its cone_angles are kept"
     )
     cones.add_argument(
         "--seamless", action="store_true", help="choose positions and angles together for a seamless layout"
@@ -73,6 +73,12 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
     add_cut_options(cones)
     add_stitch_option(cones, default=False)
     add_strict_option(cones, "set of cones")
+
+
+class _Completes(Reads):
+    """A file of cones that the output, which has them too, may replace."""
+
+    completed_by = "--output"
 
 
 def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> Placement:

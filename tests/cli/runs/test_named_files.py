@@ -42,12 +42,12 @@ def test_every_argument_that_may_name_a_file_is_declared_so(name: str) -> None:
     assert free - NO_FILES == {action.dest for action in FILES[name]}
 
 
-# Every argument that is written with every other one; a batch writes into a folder.
+# Every argument that is written with every other one, but with what it completes; a batch writes into a folder.
 PAIRS = [
     (name, one.dest, other.dest)
     for name, files in FILES.items()
     for one, other in combinations(files, 2)
-    if one.is_written or other.is_written
+    if (one.is_written or other.is_written) and not {told(one), told(other)} & {one.completed_by, other.completed_by}
 ]
 
 
