@@ -391,6 +391,16 @@ def test_files_run_no_python_whatever_the_preferences_say(tmp_path):
     assert list(marks.iterdir()) == []
     # The file is not hostile in vain: opened with its scripts, it runs all of them.
     bpy.ops.wm.open_mainfile(filepath=str(source / "first.blend"), use_scripts=True)
+    assert {mark.name for mark in used(marks, tmp_path)} == {"startup.py", "handler.py", "location", "levels", "key"}
+    # From here on Blender would run them by itself.
+    for mark in marks.iterdir():
+        mark.unlink()
+    addon.jobs.batch.files.open_file(str(source / "first.blend"))
+    assert used(marks, tmp_path) == []
+
+
+def used(marks, folder):
+    """The marks that there are once the open file is evaluated and saved."""
     bpy.context.view_layer.update()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True)
-    assert {mark.name for mark in marks.iterdir()} >= {"startup.py", "handler.py", "location", "levels", "key"}
+    addon.jobs.batch.files.save_file(str(folder / "saved.blend"))
+    return list(marks.iterdir())
