@@ -3,6 +3,7 @@
 
 import bpy
 
+from .core import per_mesh
 from .core.choices import ConeUnwrapPresetDefaults
 from .jobs.batch import command
 from .jobs.layouts import remembered
@@ -81,7 +82,20 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, remembered, redo, manual, presets)
+MODULES = (
+    per_mesh,
+    changes,
+    reports,
+    distortion,
+    texture,
+    texel_settings,
+    handlers,
+    command,
+    remembered,
+    redo,
+    manual,
+    presets,
+)
 
 
 def register() -> None:

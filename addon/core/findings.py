@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from . import native, redraw
 from .errors import Refused
+from .per_mesh import kept_by_mesh
 from .text import counted
 from .wording import for_artists
 
@@ -153,8 +154,7 @@ class KeptFinding:
     times: int = 1
 
 
-# By session_uid, which undo does not change.
-_last: dict[int, list[KeptFinding]] = {}
+_last: dict[int, list[KeptFinding]] = kept_by_mesh()
 
 
 def keep(obj: bpy.types.Object, region: Region | None, problems: Iterable[Problem]) -> None:

@@ -18,6 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..core.per_mesh import kept_by_mesh
 from ..core.region import Region
 from ..core.runs import as_runs, from_runs
 from . import changes
@@ -70,8 +71,8 @@ ELEMENTS = ("cones", "flipped", "overlapping", "drawn")
 _known: OrderedDict[str, Report] = OrderedDict()
 KNOWN = 64
 
-# By session_uid of the mesh: its version and the report that was current then.
-_current: dict[int, tuple[tuple[int, int], Report | None]] = {}
+# The version of each mesh and the report that was current then.
+_current: dict[int, tuple[tuple[int, int], Report | None]] = kept_by_mesh()
 
 
 def joined(earlier: Report | None, report: Report, region: Region) -> Report:
@@ -165,4 +166,3 @@ def register() -> None:
 def unregister() -> None:
     del bpy.types.Mesh.cone_unwrap_report
     _known.clear()
-    _current.clear()

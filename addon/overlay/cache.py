@@ -11,6 +11,7 @@ import bpy
 
 from ..core import redraw
 from ..core.identifiers import DISTORTION_ATTRIBUTES
+from ..core.per_mesh import kept_by_mesh
 from ..mesh import changes, reports
 from .content import Content, build_content
 
@@ -31,10 +32,10 @@ class Entry:
         return self.drawn[key]
 
 
-_entries: dict[int, Entry] = {}
+_entries: dict[int, Entry] = kept_by_mesh()
 
-# By session_uid of the mesh: the cone that is drawn larger.
-_highlighted: dict[int, int] = {}
+# The cone that is drawn larger.
+_highlighted: dict[int, int] = kept_by_mesh()
 
 
 def entry(obj: bpy.types.Object) -> Entry:

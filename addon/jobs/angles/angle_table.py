@@ -16,6 +16,7 @@ import numpy as np
 
 from ...core import identifiers, native
 from ...core.cone_angles import ConeAngles, Kind
+from ...core.per_mesh import kept_by_mesh
 from ...core.places import place_names
 from ...core.text import counted
 from ...mesh import changes
@@ -63,8 +64,7 @@ class TablePart:
     ledger: lsgp.LedgerPart
 
 
-# By session_uid of the mesh, which undo does not change.
-_tables: dict[int, tuple[tuple[int, int], TableSettings, list[TablePart]]] = {}
+_tables: dict[int, tuple[tuple[int, int], TableSettings, list[TablePart]]] = kept_by_mesh()
 
 
 class FollowedTable:

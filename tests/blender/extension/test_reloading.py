@@ -74,3 +74,15 @@ def test_disabling_ends_what_is_computed(enabled_again: None) -> None:
     addon_utils.disable(EXTENSION)
     assert running.finished()
     assert in_blender() == []
+
+
+def test_nothing_of_a_file_is_kept_once_another_is_open() -> None:
+    cube = add_cone_cube()
+    cube.data.vertices.add(1)
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert bpy.ops.mesh.cone_select_one(vertex=0) == {"FINISHED"}
+    assert bpy.ops.mesh.cone_update_table() == {"FINISHED"}
+    kept = addon.core.per_mesh._all
+    assert all(list(one) == [cube.data.session_uid] for one in kept)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert not any(kept)

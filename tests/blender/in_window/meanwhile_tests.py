@@ -12,6 +12,7 @@ from threading import Event
 
 import bmesh
 import bpy
+import edit_tests
 import numpy as np
 from installed import addon
 from invoke_tests import computing, stored_uv, unwrap, unwrapping
@@ -271,3 +272,20 @@ def test_a_file_that_is_saved_while_cones_are_edited_has_the_map_as_it_is_shown(
         yield from press("ESC")
         yield from until(lambda: not running("MESH_OT_cone_edit"))
         assert changed(before, snapshot(ball)) <= {uv_key()}
+
+
+def test_a_file_that_is_saved_without_a_window_has_the_gizmos_that_are_hidden():
+    yield from edit_tests.begin()
+    saved = []
+
+    def note(*_):
+        views = (area.spaces.active for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D")
+        saved.extend(space.show_gizmo_tool for space in views)
+
+    bpy.app.handlers.save_pre.append(note)
+    with tempfile.TemporaryDirectory() as folder, bpy.context.temp_override(window=None, area=None, region=None):
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder, "saved.blend")), copy=True)
+    bpy.app.handlers.save_pre.remove(note)
+    assert len(saved) > 1 and all(saved)
+    yield from press("ESC")
+    yield from until_ended("mesh.cone_edit")
