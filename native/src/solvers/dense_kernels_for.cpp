@@ -14,6 +14,10 @@
 
 #include "solvers/dense_kernels.hpp"
 
+#ifdef EIGEN_CPUID
+#error "Eigen would divide products by the caches of the machine it runs on: define EIGEN_NO_CPUID everywhere."
+#endif
+
 namespace lsgp::LSGP_INSTRUCTIONS {
 
 namespace {

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -26,6 +27,10 @@ MODELS = {
     "circular cone": closed.lathe(np.array([1.0, 0.0]), np.array([0.0, 2.0]), 32, caps=(True, False)),
     "comb": meshes.voxels(np.array([[1, 1, 1, 1, 1, 1], *[[1, 0, 1, 0, 1, 0]] * 3], bool)[:, :, None]),
     "block": closed.box(4, (1, 1.5, 2)),
+    **{
+        f"frustum of {top} by {height}": closed.lathe(np.array([1, top]), np.array([0, height]), 20, caps=(True, True))
+        for top, height in ((0.5, 0.7), (0.5, 1.0), (0.6, 1.0), (0.7, 1.3))
+    },
 }
 
 
@@ -42,40 +47,45 @@ def without_packer(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     return before
 
 
-def test_further_islands_fill_the_square(monkeypatch: pytest.MonkeyPatch) -> None:
-    before, gained = without_packer(monkeypatch), []
-    for name, mesh in MODELS.items():
-        before.clear()
-        after = lsgp.auto_unwrap(surface(mesh), preset="bake")
-        usual = before[0]
-        filled = uv_area(lsgp.pack_islands(usual.corner_uv, usual.island))
-        if uv_area(after.corner_uv) == filled:
-            assert after.island.tolist() == usual.island.tolist(), name
-            continue
-        gained.append(name)
-        assert filled < 0.6, name
-        assert uv_area(after.corner_uv) > filled, name
-        assert after.distortion.l2_stretch <= 1.01 * usual.distortion.l2_stretch, name
-        assert len(after.flipped) == 0 == len(after.overlapping), name
-    assert len(gained) >= 2 and "block" not in gained
+@pytest.mark.parametrize("name", MODELS)
+def test_divisions_other_than_the_estimated_one_fill_the_square_more(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever is chosen: the islands that packers fill a square with best change with the last bits of a mesh."""
+    before = without_packer(monkeypatch)
+    after = lsgp.auto_unwrap(surface(MODELS[name]), preset="bake")
+    usual = before[0]
+    filled = uv_area(lsgp.pack_islands(usual.corner_uv, usual.island))
+    if after.island.tolist() == usual.island.tolist():
+        assert uv_area(after.corner_uv) == filled
+        return
+    islands, others = (map_comparison.island_count(result) for result in (usual, after))
+    assert filled < 0.7
+    assert uv_area(after.corner_uv) > (1 + 0.3 * max(0, others - islands) / others) * filled
+    assert after.distortion.l2_stretch <= 1.01**2 * usual.distortion.l2_stretch  # one may replace another
+    assert len(after.flipped) == 0 == len(after.overlapping)
 
 
-def test_bake_is_divided_otherwise_where_less_than_seven_tenths_are_filled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frusta of cones: with as few islands as it takes, or further ones for a fuller square."""
-    before, gained = without_packer(monkeypatch), []
-    for top, height in ((0.5, 0.7), (0.5, 1.0), (0.6, 1.0), (0.7, 1.3)):
-        before.clear()
-        frustum = closed.lathe(np.array([1, top]), np.array([0, height]), 20, caps=(True, True))
-        after = lsgp.auto_unwrap(surface(frustum), preset="bake")
-        usual = before[0]
-        filled = uv_area(lsgp.pack_islands(usual.corner_uv, usual.island))
-        fuller = uv_area(after.corner_uv) / filled
-        assert fuller >= 1
-        if fuller > 1:
-            more = int(after.island.max()) - int(usual.island.max())
-            assert filled < 0.7 and fuller > 1 + 0.3 * max(0, more) / (int(usual.island.max()) + 1)
-            gained.append(filled)
-    assert len(gained) >= 1 and max(gained) > 0.6
+@pytest.mark.parametrize(
+    ("filled", "changes"),
+    [
+        (lambda islands: islands / 20, 1),
+        (lambda islands: 0.6 / islands, -1),
+        (lambda islands: 0.5, 0),
+        (lambda islands: 0.7 + islands / 100, 0),  # no other is tried
+    ],
+    ids=["more fill more", "fewer fill more", "all fill as much", "the square is full"],
+)
+def test_the_division_that_fills_the_square_most_is_chosen(
+    filled: Callable[[int], float], changes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Given what the packer answers, so that it does not hang on what it makes of the islands of this mesh."""
+    before = without_packer(monkeypatch)
+    monkeypatch.setattr(
+        map_comparison, "_filled_when_packed", lambda result, *_, **__: filled(map_comparison.island_count(result))
+    )
+    after = lsgp.auto_unwrap(surface(MODELS["spring of 3 turns"]), preset="bake")
+    assert np.sign(map_comparison.island_count(after) - map_comparison.island_count(before[0])) == changes
 
 
 @pytest.mark.parametrize(("triangles", "most"), [(5000, 0.7), (5001, 0.6)])
