@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The process state that all tests need."""
 
+import importlib
 import os
+import shlex
 import signal
+import sys
 from collections.abc import Iterator
 from itertools import islice
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +19,33 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+def pytest_configure() -> None:
+    """With LSGP_TEST_JITTER, a seed, all inputs are moved by units in the last place, here and in other processes."""
+    if os.environ.get("LSGP_TEST_JITTER"):
+        folder = str(Path(__file__).with_name("jitter"))
+        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [folder, os.environ.get("PYTHONPATH")]))
+        sys.path.append(folder)
+        importlib.import_module("jittered_inputs").move_inputs()
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """After all else, what failed as one command, where the one that runs tests is named."""
+    reporter, command = config.pluginmanager.get_plugin("terminalreporter"), os.environ.get("LSGP_TEST_COMMAND")
+    reports = [report for kind in ("failed", "error") for report in (reporter.stats if reporter else {}).get(kind, [])]
+    if command and reports:
+        failed = dict.fromkeys(report.nodeid for report in reports)
+        seed = os.environ.get("LSGP_TEST_JITTER")
+        again = [f"LSGP_TEST_JITTER={shlex.quote(seed)}"] if seed else []
+        print(f"\n{len(failed)} failed. To run them again:\n{' '.join([*again, command, shlex.join(failed)])}")
+
+
+@pytest.fixture(autouse=True)
+def exact_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inputs stay as they are in tests that are so marked."""
+    if request.node.get_closest_marker("exact_input"):
+        monkeypatch.delenv("LSGP_TEST_JITTER", raising=False)
 
 
 @pytest.fixture

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -58,7 +60,7 @@ def edge_directions(surface: Surface, edges: ArrayLike, *, up: ArrayLike | None 
 def is_upward(vectors: FloatArray, up: FloatArray) -> NDArray[np.bool_]:
     """(k,) which of the vectors, (k, 3), are rather along `up`, (3,), than against it; of those across it the ones that
     are along z, or else y, or else x."""
-    parts = np.column_stack([vectors @ (up / np.linalg.norm(up)), vectors[:, ::-1]])
+    parts = np.column_stack([(vectors * (up / math.hypot(*up))).sum(axis=1), vectors[:, ::-1]])
     counts = np.abs(parts) > _ACROSS * np.abs(vectors).max(axis=1, initial=0, keepdims=True)
     return parts[np.arange(len(parts)), counts.argmax(axis=1)] >= 0
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base import arguments
+from .base.angles import arctan2
 from .base.arguments import FloatArray, IndexArray
 from .base.edge_keys import edge_keys
 from .surface import Surface
@@ -51,4 +52,4 @@ def _bends(surface: Surface, sides: IndexArray, first: NDArray[np.intp], second:
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     a, b = normal[first // 3], normal[second // 3]
     b = np.where((sides[first] == sides[second]).all(axis=1, keepdims=True), -b, b)
-    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
+    return arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))

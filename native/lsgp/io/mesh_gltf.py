@@ -250,10 +250,16 @@ def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _placed(points: NDArray[np.float64], transform: NDArray[np.float64]) -> NDArray[np.float64]:
     with np.errstate(all="ignore"):
-        placed = points @ transform[:3, :3].T + transform[:3, 3]
-        if np.linalg.det(transform[:3, :3]) < 0:
+        placed = _product(transform[:3, :3], points.T).T + transform[:3, 3]
+        first, second, third = transform[:3, :3]
+        if (np.cross(first, second) * third).sum() < 0:
             placed[:, 0] *= -1  # the triangles are to turn as they do in the mesh
     return placed
+
+
+def _product(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of matrices. That of numpy is rounded otherwise on other processors, and these are positions."""
+    return sum(left[:, k, np.newaxis] * right[k] for k in range(len(right)))
 
 
 def _transforms(document: Document) -> dict[int, NDArray[np.float64]]:
@@ -270,7 +276,7 @@ def _transforms(document: Document) -> dict[int, NDArray[np.float64]]:
             continue
         seen.add(number)
         with np.errstate(over="ignore", invalid="ignore"):  # places that are not finite are refused by the library
-            transform = above @ _matrix(nodes[number])
+            transform = _product(above, _matrix(nodes[number]))
         if "mesh" in nodes[number]:
             found.setdefault(index_of(nodes[number]["mesh"], meshes, "mesh"), transform)
         waiting += [(child, transform) for child in reversed(children[number])]

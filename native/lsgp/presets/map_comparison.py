@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -234,7 +235,7 @@ def seamless_worth(share: FloatArray | float, l2_stretch: FloatArray | float, re
     return (
         share * np.where(has_direction(share), 1.0, _WORTH_WITHOUT_DIRECTION)
         - _FEATURES_FOR_STRETCH * np.asarray(l2_stretch)
-        + _FEATURES_FOR_TILES * (np.log2(result.seamless.tile_size) - is_uneven)
+        + _FEATURES_FOR_TILES * (math.log2(result.seamless.tile_size) - is_uneven)
     )
 
 

@@ -15,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.angles import arctan2
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
 from ..base.progress import Progress, tell
@@ -126,5 +127,5 @@ def _corners_and_edges(positions: FloatArray, quads: IndexArray) -> tuple[FloatA
     """(q,) the largest angle of a quad's corners to a right angle, radians, and the length of its shortest edge."""
     corners = positions[quads]
     along, back = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    angle = np.arctan2(np.linalg.norm(np.cross(along, back), axis=2), np.einsum("qcx,qcx->qc", along, back))
+    angle = arctan2(np.linalg.norm(np.cross(along, back), axis=2), np.einsum("qcx,qcx->qc", along, back))
     return np.abs(angle - math.pi / 2).max(axis=1), np.linalg.norm(along, axis=2).min(axis=1)

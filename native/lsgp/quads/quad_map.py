@@ -32,6 +32,9 @@ _INSIDE = 1e-3
 _LONGEST_WAY = 3.0
 # Weight of the map at the center in the fit. It counts where the other values are nearly on one line.
 _AT_CENTER = 0.01
+# Edges are parallel if the sine of the angle between them, or rather their double area relative to the sum of their
+# squares, is rounding.
+_PARALLEL = 1e-15
 # A way may miss its goal where the surface is folded within a quad. The map's own value there is taken if it is as near
 # to the continued one as this, relative to the distance of that one.
 _NEAR = 0.5
@@ -171,22 +174,53 @@ def _beyond(triangles: IndexArray, corner_uv: FloatArray) -> Indices:
 
 def _barycentric(corners: FloatArray, points: FloatArray) -> FloatArray:
     """(k, 3) of points in triangles, (k, 3, 3); those of a triangle's middle where it has no area."""
-    edges = corners[:, 1:] - corners[:, :1]
-    shares = np.einsum("kxe,kx->ke", np.linalg.pinv(edges), points - corners[:, 0])
+    shares = np.einsum("kex,kx->ke", _dual(corners[:, 1:] - corners[:, :1]), points - corners[:, 0])
     return np.concatenate([1 - shares.sum(axis=1, keepdims=True), shares], axis=1)
 
 
 def _gradients(surface: Surface, corner_uv: FloatArray, triangles: IndexArray) -> FloatArray:
     """(k, 3, 2) the linear part of the map on some triangles; 0 across them."""
     corners, uv = surface.positions[surface.triangles[triangles]], corner_uv[triangles]
-    return np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
+    return np.einsum("kex,kec->kxc", _dual(corners[:, 1:] - corners[:, :1]), uv[:, 1:] - uv[:, :1])
+
+
+def _dual(edges: FloatArray) -> FloatArray:
+    """(k, 2, 3) the pseudoinverses of two edges of triangles, (k, 2, 3), transposed. Not those of numpy, which are
+    rounded otherwise on other processors."""
+    unit = _sizes(edges)
+    edges = edges / unit
+    first, second = edges[:, 0], edges[:, 1]
+    normal = np.cross(first, second)
+    area, size = (normal**2).sum(axis=1), (edges**2).sum(axis=(1, 2))
+    # Where the edges are parallel, they are their own duals but for a factor; where both are points, 0.
+    is_flat = area <= (_PARALLEL * size) ** 2
+    duals = np.where(
+        is_flat[:, np.newaxis, np.newaxis],
+        edges,
+        np.stack([np.cross(second, normal), np.cross(normal, first)], axis=1),
+    )
+    return duals / np.where(is_flat, np.where(size > 0, size, 1.0), area)[:, np.newaxis, np.newaxis] / unit
 
 
 def _fitted(at_center: FloatArray, places: FloatArray, values: FloatArray) -> FloatArray:
     """(k, 3, 2) the linear part of the affine map that fits values, (k, c, 2), at places, (k, c, 3), best."""
     offsets = places - places.mean(axis=1, keepdims=True)
-    square = np.swapaxes(offsets, 1, 2) @ offsets
+    unit = _sizes(offsets)
+    offsets = offsets / unit
+    square = np.einsum("kcx,kcy->kxy", offsets, offsets)
     weight = _AT_CENTER * np.trace(square, axis1=1, axis2=2)[:, np.newaxis, np.newaxis]
     weight = np.where(weight > 0, weight, 1.0)
-    moments = np.swapaxes(offsets, 1, 2) @ (values - values.mean(axis=1, keepdims=True))
-    return np.linalg.solve(square + weight * np.eye(3), moments + weight * at_center)
+    moments = np.einsum("kcx,kcy->kxy", offsets, values - values.mean(axis=1, keepdims=True))
+    # By Cramer's rule: the condition is below 1 / _AT_CENTER + 1. numpy.linalg rounds otherwise on other processors.
+    rows = np.moveaxis(square + weight * np.eye(3), 1, 0)
+    columns = np.stack([np.cross(rows[(i + 1) % 3], rows[(i + 2) % 3]) for i in range(3)], axis=2)
+    determinant = (rows[0] * columns[:, :, 0]).sum(axis=1)
+    return np.einsum("kxy,kyc->kxc", columns, moments + weight * unit * at_center) / (
+        determinant[:, np.newaxis, np.newaxis] * unit
+    )
+
+
+def _sizes(vectors: FloatArray) -> FloatArray:
+    """(k, 1, 1) the largest coordinate of each k, in which products of six of them do not overflow; 1 for 0."""
+    largest = np.abs(vectors).max(axis=(1, 2), keepdims=True)
+    return np.where(largest > 0, largest, 1.0)

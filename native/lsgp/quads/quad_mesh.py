@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from .. import _lsgp
 from ..base import arguments
+from ..base.angles import arctan2
 from ..base.arguments import FloatArray, IndexArray
 from ..base.equality import EqualByContent
 from ..base.progress import Progress
@@ -103,7 +104,7 @@ def quad_quality(positions: ArrayLike, quads: ArrayLike, density: ArrayLike | No
     ahead = np.roll(corners, -1, axis=1) - corners
     back = np.roll(corners, 1, axis=1) - corners
     doubled_area = np.linalg.norm(np.cross(ahead, back), axis=2)
-    errors = np.abs(np.arctan2(doubled_area, (ahead * back).sum(axis=2)) - math.pi / 2)
+    errors = np.abs(arctan2(doubled_area, (ahead * back).sum(axis=2)) - math.pi / 2)
     # A mesh's edge is in two quads, so that all count alike.
     lengths = np.linalg.norm(ahead, axis=2)
     if wanted is not None:

@@ -43,6 +43,28 @@ def test_meshes_are_read_where_their_nodes_put_them_and_welded(tmp_path: Path, f
     assert (normal[:, 2] > 0).all()  # a mirrored mesh does not turn over
 
 
+def test_positions_are_rounded_alike_on_every_processor(tmp_path: Path) -> None:
+    """They are sums in one order, without the fused operations that some processors have."""
+    corners, _, _ = soup()
+    points, (x, y, z, w) = corners.reshape(-1, 3), (0.2, 0.4, 0.4, 0.8)
+    b = Builder()
+    b.content |= {
+        "nodes": [{"mesh": 0, "rotation": [x, y, z, w], "scale": [0.1, 0.3, 0.7], "translation": [0.2, 0.6, 0.9]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": b.add(points)}}]}],
+    }
+    file = read_mesh_file(in_file(tmp_path, b.gltf(), "a.gltf"))
+    matrix = [
+        [(1 - 2 * (y * y + z * z)) * 0.1, 2 * (x * y - z * w) * 0.3, 2 * (x * z + y * w) * 0.7],
+        [2 * (x * y + z * w) * 0.1, (1 - 2 * (x * x + z * z)) * 0.3, 2 * (y * z - x * w) * 0.7],
+        [2 * (x * z - y * w) * 0.1, 2 * (y * z + x * w) * 0.3, (1 - 2 * (x * x + y * y)) * 0.7],
+    ]
+    expected = [
+        [a * p + b * q + c * r + moved for (a, b, c), moved in zip(matrix, (0.2, 0.6, 0.9), strict=True)]
+        for p, q, r in points.astype(float).tolist()
+    ]
+    assert file.mesh.positions[file.triangulation.triangles].reshape(-1, 3).tolist() == expected
+
+
 @pytest.mark.parametrize("form", ["gltf", "glb"])
 @pytest.mark.parametrize("written", ["gltf", "glb"])
 def test_everything_but_texture_coordinates_stays(tmp_path: Path, form: str, written: str) -> None:

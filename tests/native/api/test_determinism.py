@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import lsgp
 import meshes
 import numpy as np
@@ -10,6 +12,8 @@ import oracle
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lsgp.base.angles import arctan2
+from lsgp.quads.quad_map import QuadCenters, map_on_quads
 from map_checks import digest, pairs, surface, unwrap
 from meshes import Mesh
 from other_process import in_another_process
@@ -38,6 +42,35 @@ def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -
     printed = in_another_process(script, LSGP_THREADS=threads, PYTHONHASHSEED=threads)
     expected = [f"{digest(unwrap(m))} {digest(unwrap(m, unfold='spectral'))}" for m in SURFACES.values()]
     assert printed.split("\n")[:-1] == expected
+
+
+def computed_in_python() -> list[str]:
+    """Digests of results that numpy has a part in."""
+    mesh = meshes.bumpy_sphere(3)
+    ball = lsgp.Surface(mesh.positions, mesh.triangles, features=mesh.triangles[:40, :2])
+    quads = lsgp.remesh_to_quads(ball, target=150).mesh
+    centers = QuadCenters(quads.triangles[quads.quads[:, 0]], quads.positions[quads.quads[:, 0]])
+    corner_uv = mesh.positions[mesh.triangles][..., :2]
+    bends = [lsgp.feature_edges(ball, angle=angle) for angle in np.linspace(0.02, 0.4, 20)]
+    found = {
+        "bends": np.concatenate(bends),
+        "arctan2": arctan2(*mesh.positions.T[:2]),
+        "directions": lsgp.edge_directions(ball, mesh.triangles[:, :2], up=(0.3, 0.5, 0.7)),
+        "polished": quads.positions,
+        "map": map_on_quads(ball, quads, centers, corner_uv).corner_uv,
+    }
+    return [f"{name} {hashlib.sha256(values.tobytes()).hexdigest()}" for name, values in found.items()]
+
+
+def test_what_python_computes_is_the_same_on_older_processors() -> None:
+    """Numpy and its BLAS have an implementation for each set of instructions, and round otherwise in each."""
+    printed = in_another_process(
+        "import test_determinism as t; print('\\n'.join(t.computed_in_python()))",
+        OPENBLAS_CORETYPE="Nehalem",
+        NPY_DISABLE_CPU_FEATURES="FMA3 AVX2 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR "
+        "X86_V3 X86_V4",
+    )
+    assert printed.splitlines() == computed_in_python()
 
 
 SYMMETRIC = {
