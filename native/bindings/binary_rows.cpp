@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -36,12 +37,18 @@ std::int64_t number_of(std::string_view bytes, bool is_little, bool is_signed) {
 // the count of every row and all its bytes.
 Cells binary_rows(const py::bytes& data, std::size_t at, std::int64_t rows, const std::vector<int>& count_widths,
                   const std::vector<int>& widths, const std::vector<std::size_t>& wanted, bool is_little) {
-  constexpr std::size_t widest = 8;
   const auto text = static_cast<std::string_view>(data);
-  if (at > text.size() || count_widths.size() != widths.size()) throw py::value_error("no such table");
   const std::size_t columns = widths.size();
+  const auto are_within = [](const std::vector<int>& numbers, int least, int most) {
+    return std::all_of(numbers.begin(), numbers.end(), [&](int number) { return number >= least && number <= most; });
+  };
+  const bool are_columns = std::all_of(wanted.begin(), wanted.end(), [&](std::size_t of) { return of < columns; });
+  if (at > text.size() || count_widths.size() != columns || !are_within(count_widths, -4, 4) ||
+      !are_within(widths, 1, 8) || !are_columns) {
+    refuse("WRONG_PARAMETER", "There is no such table; pass a place in the data, widths of each column and columns.");
+  }
   std::vector<std::size_t> place(columns, columns);  // among those wanted
-  for (std::size_t i = 0; i < wanted.size(); ++i) place.at(wanted[i]) = i;
+  for (std::size_t i = 0; i < wanted.size(); ++i) place[wanted[i]] = i;
   std::vector<std::vector<std::int64_t>> counts(wanted.size());
   std::vector<std::string> cells(wanted.size());
   std::int64_t row = 0;
@@ -50,12 +57,12 @@ Cells binary_rows(const py::bytes& data, std::size_t at, std::int64_t rows, cons
       std::int64_t count = 1;
       if (const int signed_width = count_widths[column]; signed_width != 0) {
         const auto width = static_cast<std::size_t>(signed_width < 0 ? -signed_width : signed_width);
-        if (width > 4 || text.size() - at < width) return false;
+        if (text.size() - at < width) return false;
         count = number_of(text.substr(at, width), is_little, signed_width < 0);
         at += width;
       }
       const auto width = static_cast<std::size_t>(widths[column]);
-      if (count < 0 || width > widest || text.size() - at < static_cast<std::size_t>(count) * width) return false;
+      if (count < 0 || text.size() - at < static_cast<std::size_t>(count) * width) return false;
       const std::string_view cell = text.substr(at, static_cast<std::size_t>(count) * width);
       at += cell.size();
       if (place[column] == columns) continue;

@@ -327,8 +327,11 @@ void clip_ears_of_one(const std::vector<Point>& points, const IsTaken& is_taken,
 // Triangles (k, n - 2, 3), local corners, of k counter-clockwise polygons (k, n, 2) of the size of 1, each by itself.
 // is_taken: whether the diagonal between two corners is to be avoided; may be empty.
 Places clip_ears(const Numbers& polygons, const IsTaken& is_taken) {
-  const auto place = polygons.unchecked<3>();
-  const py::ssize_t count = place.shape(0), size = place.shape(1);
+  const View<double, 3> place("polygons", polygons, {any_length, any_length, 2});
+  const py::ssize_t count = place.length(), size = place.length(1);
+  if (size < 3 || size > std::numeric_limits<Corner>::max()) {
+    refuse("WRONG_SHAPE", "polygons have " + std::to_string(size) + " corners; pass at least 3.");
+  }
   Places triangles({count, size - 2, py::ssize_t{3}});
   auto out = triangles.mutable_unchecked<3>();
   std::vector<Point> points(static_cast<std::size_t>(size));

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "island_fit.hpp"
 
-#include <pybind11/numpy.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +10,12 @@
 #include <numeric>
 #include <vector>
 
+#include "arrays.hpp"
+
 namespace py = pybind11;
 
 namespace {
 
-using Numbers = py::array_t<double, py::array::c_style>;
-using Indices = py::array_t<std::int32_t, py::array::c_style>;
 using Word = std::uint64_t;
 
 constexpr int word_bits = 64;
@@ -78,7 +76,8 @@ struct Island {
   std::vector<Triangle> triangles;
   int width = 0, height = 0;
 
-  void stretch() {
+  // Returns false for one that is not smaller than a square with this side.
+  bool stretch(int inside) {
     constexpr float most = std::numeric_limits<float>::max();
     Point low{most, most}, size{0, 0};
     for (const Triangle& triangle : triangles)
@@ -89,13 +88,15 @@ struct Island {
         size = {std::max(size.x, corner.x), std::max(size.y, corner.y)};
       }
     }
-    width = static_cast<int>(std::ceil(size.x));
-    height = static_cast<int>(std::ceil(size.y));
-    const auto stretched = [](float at, float of, int whole) {
-      return of > 0 ? at / of * static_cast<float>(whole) : 0;
-    };
+    const Point whole{std::ceil(size.x), std::ceil(size.y)};
+    if (!(std::max(whole.x, whole.y) < static_cast<float>(inside))) return false;
+    width = static_cast<int>(whole.x);
+    height = static_cast<int>(whole.y);
+    const auto stretched = [](float at, float of, float to) { return of > 0 ? at / of * to : 0; };
     for (Triangle& triangle : triangles)
-      for (Point& corner : triangle) corner = {stretched(corner.x, size.x, width), stretched(corner.y, size.y, height)};
+      for (Point& corner : triangle)
+        corner = {stretched(corner.x, size.x, whole.x), stretched(corner.y, size.y, whole.y)};
+    return true;
   }
 };
 
@@ -191,9 +192,9 @@ class Square {
 
 // Islands one by one, the largest first, each where the square around all of them grows least.
 bool fit(std::vector<Island>& islands, int inside, int padding) {
+  if (islands.empty()) return true;
   for (Island& island : islands) {
-    island.stretch();
-    if (std::max(island.width, island.height) >= inside) return false;
+    if (!island.stretch(inside)) return false;
   }
   const auto extent = [&](std::size_t k) { return islands[k].width + islands[k].height; };
   std::vector<std::size_t> order(islands.size());
@@ -242,11 +243,21 @@ bool fit(std::vector<Island>& islands, int inside, int padding) {
 // Whether xatlas, which takes ten times as long, finds a place for all islands; rounding aside, it always agrees.
 // corners: (t, 3, 2), in texels. island: (t), those of one island one after another. inside: texels of the square
 // without its margin. padding: texels around each island.
-bool islands_fit(const Numbers& corners, const Indices& island, int inside, int padding) {
-  const auto place = corners.unchecked<3>();
-  const auto owner = island.unchecked<1>();
+bool islands_fit(const Numbers& corners, const Vertices& island, int inside, int padding) {
+  constexpr int most_texels = 1 << 14;  // of a side: a square of them takes 1 GB
+  const View<double, 3> place("corners", corners, {any_length, 3, 2});
+  const View<std::int32_t, 1> owner("island", island, {place.length()});
+  place.require_finite();
+  if (inside < 0 || padding < 0 || inside > most_texels || padding > (most_texels - inside) / 2) {
+    refuse("WRONG_PARAMETER", "The square has " + std::to_string(inside) + " texels inside a padding of " +
+                                  std::to_string(padding) + "; pass numbers from 0, up to " +
+                                  std::to_string(most_texels) + " together.");
+  }
+  // Beyond single precision nothing fits.
+  constexpr double most = std::numeric_limits<float>::max();
+  if (std::any_of(place.begin(), place.end(), [](double at) { return std::abs(at) > most; })) return false;
   std::vector<Island> islands;
-  for (py::ssize_t t = 0; t < owner.shape(0); ++t) {
+  for (py::ssize_t t = 0; t < owner.length(); ++t) {
     if (t == 0 || owner(t) != owner(t - 1)) islands.emplace_back();
     Triangle triangle{};
     for (py::ssize_t k = 0; k < 3; ++k)

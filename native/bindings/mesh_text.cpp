@@ -104,18 +104,28 @@ TokenRows split_rows(const py::bytes& data, bool comments, bool continued) {
 class Tokens {
  public:
   Tokens(const py::bytes& data, const Places& begins, const Places& ends)
-      : text_(view_of(data)), begins_(begins.unchecked<1>()), ends_(ends.unchecked<1>()) {}
+      : text_(view_of(data)), begins_("begins", begins, {any_length}), ends_("ends", ends, {begins_.length()}) {}
+
+  // picks: indices of tokens.
+  View<std::int64_t, 1> picked(const Places& picks) const {
+    const View<std::int64_t, 1> pick("picks", picks, {any_length});
+    pick.require_below(begins_.length());
+    return pick;
+  }
 
   std::string_view operator[](std::int64_t token) const {
-    if (token < 0 || token >= begins_.shape(0)) throw py::index_error("no such token");
-    const auto begin = static_cast<std::size_t>(begins_(token)), end = static_cast<std::size_t>(ends_(token));
-    return text_.substr(begin, end - begin);
+    const std::int64_t begin = begins_(token), end = ends_(token);
+    if (begin < 0 || begin > end || end > static_cast<std::int64_t>(text_.size())) {
+      refuse("INDEX_OUT_OF_RANGE", "A token is from " + std::to_string(begin) + " to " + std::to_string(end) +
+                                       "; pass places in the text of " + std::to_string(text_.size()) + " bytes.");
+    }
+    return text_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
   }
   std::int64_t place(std::int64_t token) const { return begins_(token); }
 
  private:
   std::string_view text_;
-  py::detail::unchecked_reference<std::int64_t, 1> begins_, ends_;
+  View<std::int64_t, 1> begins_, ends_;
 };
 
 // Python's own conversion: also of infinity, of what over- or underflows, and where the standard library has none.
@@ -183,10 +193,10 @@ template <typename Number>
 py::typing::Tuple<py::array_t<Number>, py::ssize_t> parse_numbers(const py::bytes& data, const Places& begins,
                                                                   const Places& ends, const Places& picks) {
   const Tokens tokens(data, begins, ends);
-  const auto pick = picks.unchecked<1>();
-  py::array_t<Number> out(pick.shape(0));
+  const View<std::int64_t, 1> pick = tokens.picked(picks);
+  py::array_t<Number> out(pick.length());
   auto numbers = out.template mutable_unchecked<1>();
-  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+  for (py::ssize_t i = 0; i < pick.length(); ++i) {
     if (!parse_number(tokens[pick(i)], numbers(i))) return py::make_tuple(out, i);
   }
   return py::make_tuple(out, -1);
@@ -197,11 +207,11 @@ py::typing::Tuple<py::array_t<Number>, py::ssize_t> parse_numbers(const py::byte
 py::typing::Tuple<Places, Places> slash_parts(const py::bytes& data, const Places& begins, const Places& ends,
                                               const Places& picks, int part) {
   const Tokens tokens(data, begins, ends);
-  const auto pick = picks.unchecked<1>();
-  Places part_begins(pick.shape(0)), part_ends(pick.shape(0));
+  const View<std::int64_t, 1> pick = tokens.picked(picks);
+  Places part_begins(pick.length()), part_ends(pick.length());
   auto begin = part_begins.mutable_unchecked<1>();
   auto end = part_ends.mutable_unchecked<1>();
-  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+  for (py::ssize_t i = 0; i < pick.length(); ++i) {
     const std::string_view token = tokens[pick(i)];
     const std::size_t head = std::min(token.find('/'), token.size());
     const std::size_t first = part == 0 ? 0 : std::min(head + 1, token.size());
@@ -216,14 +226,14 @@ py::typing::Tuple<Places, Places> slash_parts(const py::bytes& data, const Place
 py::typing::Tuple<py::typing::List<py::bytes>, Places> distinct_tokens(const py::bytes& data, const Places& begins,
                                                                        const Places& ends, const Places& picks) {
   const Tokens tokens(data, begins, ends);
-  const auto pick = picks.unchecked<1>();
-  Places which(pick.shape(0));
+  const View<std::int64_t, 1> pick = tokens.picked(picks);
+  Places which(pick.length());
   auto out = which.mutable_unchecked<1>();
   std::unordered_map<std::string_view, std::int64_t> known;
   py::typing::List<py::bytes> texts;
   std::string_view last;
   std::int64_t last_index = -1;
-  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+  for (py::ssize_t i = 0; i < pick.length(); ++i) {
     const std::string_view token = tokens[pick(i)];
     if (last_index < 0 || token != last) {  // statements of a kind stand together
       const auto [entry, is_new] = known.emplace(token, static_cast<std::int64_t>(known.size()));
@@ -285,12 +295,12 @@ void append_number(std::string& out, Real value) {
 // A line for each row of numbers, (n, k): the keyword, the numbers, and the ending.
 py::bytes format_rows(const py::bytes& keyword, const Numbers& rows, const py::bytes& ending) {
   constexpr std::size_t usual_width = 20;
-  const auto numbers = rows.unchecked<2>();
+  const View<double, 2> numbers("rows", rows, {any_length, any_length});
   std::string out;
   out.reserve(usual_width * static_cast<std::size_t>(rows.size()));
-  for (py::ssize_t i = 0; i < numbers.shape(0); ++i) {
+  for (py::ssize_t i = 0; i < numbers.length(); ++i) {
     out += view_of(keyword);
-    for (py::ssize_t k = 0; k < numbers.shape(1); ++k) {
+    for (py::ssize_t k = 0; k < numbers.length(1); ++k) {
       out += ' ';
       append_number(out, numbers(i, k));
     }
@@ -302,11 +312,11 @@ py::bytes format_rows(const py::bytes& keyword, const Numbers& rows, const py::b
 // Appends an element of a column.
 using AppendCell = std::function<void(std::string& out, py::ssize_t row)>;
 
-AppendCell cells_of(const py::array& column) {
+AppendCell cells_of(const py::array& column, py::ssize_t count) {
   const auto of = [&](auto type, const auto& append) -> AppendCell {
-    const auto values = py::array_t<decltype(type), py::array::forcecast>::ensure(column);
-    if (!values) throw py::error_already_set();
-    return [values, append, row = values.template unchecked<1>()](std::string& out, py::ssize_t i) {
+    using Type = decltype(type);
+    const ArrayOf<Type, py::array::forcecast> values(column);
+    return [values, append, row = View<Type, 1>("columns", values, {count})](std::string& out, py::ssize_t i) {
       append(out, row(i));
     };
   };
@@ -319,10 +329,16 @@ AppendCell cells_of(const py::array& column) {
 // least one, (n) each.
 py::bytes format_table(const std::vector<py::array>& columns) {
   constexpr std::size_t usual_width = 12;
+  if (columns.empty()) refuse("WRONG_SHAPE", "columns is empty; pass one at least.");
+  const py::ssize_t count = columns.front().size();
+  for (const py::array& column : columns) {
+    if (column.ndim() != 1 || column.size() != count) {
+      refuse_shape("columns", column, "(" + std::to_string(count) + ",)");
+    }
+  }
   std::vector<AppendCell> cells;
   cells.reserve(columns.size());
-  for (const py::array& column : columns) cells.push_back(cells_of(column));
-  const py::ssize_t count = columns.front().size();
+  for (const py::array& column : columns) cells.push_back(cells_of(column, count));
   std::string out;
   out.reserve(usual_width * columns.size() * static_cast<std::size_t>(count));
   for (py::ssize_t i = 0; i < count; ++i) {
@@ -339,12 +355,14 @@ py::bytes format_table(const std::vector<py::array>& columns) {
 // mapped: (f) whether to write the coordinates.
 py::bytes format_faces(const Places& sizes, const Marks& mapped, const Places& vertices, const Places& coordinates) {
   constexpr std::size_t usual_width = 16;
-  const auto size = sizes.unchecked<1>(), vertex = vertices.unchecked<1>(), coordinate = coordinates.unchecked<1>();
-  const auto has_coordinates = mapped.unchecked<1>();
+  const View<std::int64_t, 1> vertex("vertices", vertices, {any_length});
+  const View<std::int64_t, 1> coordinate("coordinates", coordinates, {vertex.length()});
+  const View<std::int64_t, 1> size = view_of_sizes(sizes, 0, vertex.length());
+  const View<bool, 1> has_coordinates("mapped", mapped, {size.length()});
   std::string out;
   out.reserve(usual_width * static_cast<std::size_t>(vertices.size()));
   py::ssize_t corner = 0;
-  for (py::ssize_t f = 0; f < size.shape(0); ++f) {
+  for (py::ssize_t f = 0; f < size.length(); ++f) {
     out += 'f';
     for (const py::ssize_t end = corner + size(f); corner < end; ++corner) {
       out += ' ';
@@ -431,7 +449,7 @@ py::typing::Tuple<py::str, py::ssize_t, py::ssize_t> plain_lines(const py::bytes
 py::bytes replace_references(const py::bytes& lines, const Places& numbers) {
   constexpr std::size_t usual_width = 8;
   const std::string_view text = view_of(lines);
-  const auto number = numbers.unchecked<1>();
+  const View<std::int64_t, 1> number("numbers", numbers, {any_length});
   std::string out;
   out.reserve(text.size() + usual_width * static_cast<std::size_t>(numbers.size()));
   py::ssize_t corner = 0;
@@ -451,7 +469,7 @@ py::bytes replace_references(const py::bytes& lines, const Places& numbers) {
       is_keyword = false;
       continue;
     }
-    if (corner == number.shape(0)) throw py::value_error("more corners than numbers");
+    if (corner == number.length()) refuse("WRONG_SHAPE", "numbers has fewer elements than the lines have corners.");
     const std::size_t head = token.find('/');
     out += token.substr(0, head);
     out += '/';

@@ -7,9 +7,12 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <new>
 
+#include "arrays.hpp"
 #include "binary_rows.hpp"
 #include "ear_clipping.hpp"
 #include "island_fit.hpp"
@@ -23,26 +26,31 @@ namespace {
 
 using lsgp::Index;
 
-using FloatArray = py::array_t<double, py::array::c_style>;
-using IndexArray = py::array_t<Index, py::array::c_style>;
-using BoolArray = py::array_t<bool, py::array::c_style>;
+using FloatArray = Numbers;
+using IndexArray = Vertices;
+using BoolArray = Marks;
 
-// Arguments arrive as converted by the Python layer; anything else is a defect of the caller, refused by type.
 template <typename Matrix, typename Array>
-Matrix to_matrix(const Array& array) {
-  if (array.ndim() != 2 || array.shape(1) != Matrix::ColsAtCompileTime)
-    throw py::value_error("array of the wrong shape");
-  return Eigen::Map<const Matrix>(array.data(), array.shape(0), array.shape(1));
+Matrix to_matrix(const char* name, const Array& array) {
+  using Scalar = typename Matrix::Scalar;
+  const View<Scalar, 2> view(name, array, {any_length, Matrix::ColsAtCompileTime});
+  return Eigen::Map<const Matrix>(view.data(), view.length(0), view.length(1));
 }
 
-std::vector<Index> to_vector(const IndexArray& array) {
-  if (array.ndim() != 1) throw py::value_error("array of the wrong shape");
-  return {array.data(), array.data() + array.shape(0)};
+std::vector<Index> to_vector(const char* name, const IndexArray& array) {
+  const View<Index, 1> view(name, array, {any_length});
+  return {view.begin(), view.end()};
 }
 
-Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
-  if (array.ndim() != 1) throw py::value_error("array of the wrong shape");
-  return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+Eigen::VectorXd to_vector_of_numbers(const char* name, const FloatArray& array) {
+  const View<double, 1> view(name, array, {any_length});
+  return Eigen::Map<const Eigen::VectorXd>(view.data(), view.size());
+}
+
+// triangle_count: any_length where it is not known.
+lsgp::CornerUv to_corner_uv(const FloatArray& array, py::ssize_t triangle_count) {
+  const View<double, 3> view("corner_uv", array, {triangle_count, 3, 2});
+  return Eigen::Map<const lsgp::CornerUv>(view.data(), 3 * view.length(), 2);
 }
 
 // Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, directions, features,
@@ -54,17 +62,17 @@ lsgp::Surface to_surface(const SurfaceArrays& arrays) {
   const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions, features, may_collapse,
                scale] = arrays;
   lsgp::Surface surface;
-  surface.positions = to_matrix<lsgp::Positions>(positions);
-  surface.triangles = to_matrix<lsgp::Triangles>(triangles);
-  if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
-  surface.seams = to_matrix<lsgp::VertexPairs>(seams);
-  surface.borders = to_matrix<lsgp::VertexPairs>(borders);
-  surface.features = to_matrix<lsgp::VertexPairs>(features);
-  surface.importance = to_vector_of_numbers(importance);
-  surface.cut_costs = to_vector_of_numbers(cut_costs);
-  surface.directions = to_matrix<lsgp::Positions>(directions);
+  surface.positions = to_matrix<lsgp::Positions>("positions", positions);
+  surface.triangles = to_matrix<lsgp::Triangles>("triangles", triangles);
+  if (edges) surface.edges = to_matrix<lsgp::VertexPairs>("edges", *edges);
+  surface.seams = to_matrix<lsgp::VertexPairs>("seams", seams);
+  surface.borders = to_matrix<lsgp::VertexPairs>("borders", borders);
+  surface.features = to_matrix<lsgp::VertexPairs>("features", features);
+  surface.importance = to_vector_of_numbers("importance", importance);
+  surface.cut_costs = to_vector_of_numbers("cut_costs", cut_costs);
+  surface.directions = to_matrix<lsgp::Positions>("directions", directions);
   surface.may_collapse = may_collapse;
-  surface.scale = to_vector_of_numbers(scale);
+  surface.scale = to_vector_of_numbers("scale", scale);
   return surface;
 }
 
@@ -73,19 +81,34 @@ using ConeArrays = std::tuple<IndexArray, FloatArray, BoolArray>;
 
 lsgp::Cones to_cones(const ConeArrays& arrays) {
   const auto& [vertices, angles, has_angle] = arrays;
-  if (angles.ndim() != 1 || has_angle.ndim() != 1 || angles.shape(0) != has_angle.shape(0)) {
-    throw py::value_error("array of the wrong shape");
-  }
-  lsgp::Cones cones{to_vector(vertices), {}};
-  for (py::ssize_t i = 0; i < angles.shape(0); ++i) {
-    cones.angles.push_back(has_angle.at(i) ? std::optional<double>(angles.at(i)) : std::nullopt);
+  const View<double, 1> angle("angles", angles, {any_length});
+  const View<bool, 1> is_given("has_angle", has_angle, {angle.length()});
+  lsgp::Cones cones{to_vector("cones", vertices), {}};
+  for (py::ssize_t i = 0; i < angle.length(); ++i) {
+    cones.angles.push_back(is_given(i) ? std::optional<double>(angle(i)) : std::nullopt);
   }
   return cones;
 }
 
+// Throws OUT_OF_MEMORY where numpy has a MemoryError.
+template <typename Scalar>
+py::array_t<Scalar> new_array(std::vector<py::ssize_t> shape) {
+  double bytes = sizeof(Scalar);
+  for (const py::ssize_t length : shape) bytes *= static_cast<double>(length);
+  try {
+    return py::array_t<Scalar>(std::move(shape));
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_MemoryError)) throw;
+    constexpr double megabyte = 1e6;
+    throw lsgp::Error(lsgp::Code::out_of_memory,
+                      "A part of the result needs " + std::to_string(std::lround(bytes / megabyte)) +
+                          " MB of memory, which are not left. Unwrap fewer faces at once, or close other programs.");
+  }
+}
+
 template <typename Scalar>
 py::array_t<Scalar> to_array(const Scalar* data, std::vector<py::ssize_t> shape) {
-  py::array_t<Scalar> out(std::move(shape));
+  py::array_t<Scalar> out = new_array<Scalar>(std::move(shape));
   if (out.size() > 0) std::memcpy(out.mutable_data(), data, sizeof(Scalar) * static_cast<std::size_t>(out.size()));
   return out;
 }
@@ -309,6 +332,12 @@ lsgp::Progress watch_for_signals() {
   };
 }
 
+// Whether a callback's answer is False, also as a bool of numpy; nothing else stops the work.
+bool is_false(const py::object& answer) {
+  py::detail::make_caster<bool> given;
+  return given.load(answer, /*convert=*/false) && !py::detail::cast_op<bool>(given);
+}
+
 // Gets the fraction done. The verb stops if it returns False or raises an exception, and at a signal.
 using ProgressCallback = std::optional<py::typing::Callable<std::optional<bool>(double)>>;
 
@@ -317,7 +346,7 @@ lsgp::Progress to_progress(const ProgressCallback& callback) {
   return [&callback](double done) {
     const py::gil_scoped_acquire acquire;
     require_no_signal();
-    return !(*callback)(done).is(py::bool_(false));
+    return !is_false((*callback)(done));
   };
 }
 
@@ -346,7 +375,7 @@ py::dict to_dict(const lsgp::FeatureReport& report) {
 }
 
 py::dict to_dict(const lsgp::Result& result) {
-  py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
+  auto solved = new_array<bool>({static_cast<py::ssize_t>(result.island.size())});
   for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
   py::dict seconds;
   for (const auto& [stage, spent] : result.stage_seconds) seconds[stage.c_str()] = spent;
@@ -386,7 +415,7 @@ using PinArrays = std::tuple<IndexArray, FloatArray>;
 
 lsgp::Pins to_pins(const PinArrays& arrays) {
   const auto& [corners, uv] = arrays;
-  return {to_vector(corners), to_matrix<lsgp::CornerUv>(uv)};
+  return {to_vector("pinned corners", corners), to_matrix<lsgp::CornerUv>("pinned uv", uv)};
 }
 
 // What the verb and the method of the solver take after the surface.
@@ -428,7 +457,7 @@ py::dict parameterize_small(const lsgp::Preview& preview, const ConeArrays& cone
 py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones, const py::dict& option_values,
                    const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
-  const std::vector<Index> wanted = to_vector(cones);
+  const std::vector<Index> wanted = to_vector("cones", cones);
   const lsgp::Options options = to_options(option_values);
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted, options, tell); });
@@ -439,8 +468,8 @@ py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones,
 }
 
 py::typing::List<IndexArray> split_into_paths(const IndexArray& edges, const IndexArray& nodes) {
-  const auto pairs = to_matrix<lsgp::VertexPairs>(edges);
-  const std::vector<Index> ends = to_vector(nodes);
+  const auto pairs = to_matrix<lsgp::VertexPairs>("edges", edges);
+  const std::vector<Index> ends = to_vector("nodes", nodes);
   return to_arrays(without_gil([&] { return lsgp::split_into_paths(pairs, ends); }));
 }
 
@@ -452,8 +481,8 @@ lsgp::CutPreferences to_cut_preferences(const CutPreferenceArrays& arrays) {
   lsgp::CutPreferences preferences;
   if (front) preferences.front = Eigen::Vector3d((*front)[0], (*front)[1], (*front)[2]);
   preferences.creases = creases;
-  preferences.sharp = to_matrix<lsgp::VertexPairs>(sharp);
-  preferences.paint = to_vector_of_numbers(paint);
+  preferences.sharp = to_matrix<lsgp::VertexPairs>("sharp", sharp);
+  preferences.paint = to_vector_of_numbers("paint", paint);
   return preferences;
 }
 
@@ -471,9 +500,9 @@ using CreaseOptionArrays = std::tuple<double, IndexArray, Index, double>;
 py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones,
                                   const CreaseOptionArrays& option_arrays, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
-  const std::vector<Index> marked = to_vector(cones);
+  const std::vector<Index> marked = to_vector("cones", cones);
   const auto& [angle, sharp, most_corners, least_share] = option_arrays;
-  const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners, least_share};
+  const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>("sharp", sharp), most_corners, least_share};
   const lsgp::Progress tell = to_progress(progress);
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
 }
@@ -596,9 +625,8 @@ py::dict cone_gains(const SurfaceArrays& surface_arrays, const ConeArrays& cones
 py::dict measure_distortion(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv,
                             const std::optional<IndexArray>& cones, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
-  if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
-  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
-  const std::vector<Index> given = cones ? to_vector(*cones) : std::vector<Index>{};
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, surface.triangles.rows());
+  const std::vector<Index> given = cones ? to_vector("cones", *cones) : std::vector<Index>{};
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::Measurement result =
       without_gil([&] { return lsgp::measure_distortion(surface, uv, cones ? &given : nullptr, tell); });
@@ -631,8 +659,7 @@ py::dict to_dict(const lsgp::QuadMesh& mesh) {
 py::dict extract_quads(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, double cell,
                        const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
-  if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
-  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, surface.triangles.rows());
   const lsgp::Progress tell = to_progress(progress);
   return to_dict(without_gil([&] { return lsgp::extract_quads(surface, uv, cell, tell); }));
 }
@@ -650,14 +677,13 @@ py::dict move_through(const lsgp::GrabbedCut& grabbed, Index vertex) {
 
 lsgp::GrabbedCut grab(const lsgp::CutRouter& router, const IndexArray& cuts, const IndexArray& path,
                       const IndexArray& nodes) {
-  const auto edges = to_matrix<lsgp::VertexPairs>(cuts);
-  const std::vector<Index> vertices = to_vector(path), kept_off = to_vector(nodes);
+  const auto edges = to_matrix<lsgp::VertexPairs>("cuts", cuts);
+  const std::vector<Index> vertices = to_vector("path", path), kept_off = to_vector("nodes", nodes);
   return without_gil([&] { return router.grab(edges, vertices, kept_off); });
 }
 
 py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
-  if (corner_uv.size() % 6 != 0) throw py::value_error("array of the wrong shape");
-  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), corner_uv.size() / 2, 2);
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
   return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
 }
 
@@ -665,11 +691,15 @@ py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
 
 PYBIND11_MODULE(_lsgp, module) {
   module.doc() = "Native verbs of lsgp; call them through the functions of the package.";
-  py::register_exception_translator([](std::exception_ptr pending) {
+  // Of this module alone: other modules have a std::bad_alloc, too.
+  py::register_local_exception_translator([](std::exception_ptr pending) {
     try {
       if (pending) std::rethrow_exception(pending);
     } catch (const lsgp::Error& error) {
       raise_in_python(error);
+    } catch (const std::bad_alloc&) {
+      raise_in_python({lsgp::Code::out_of_memory,
+                       "There is not enough memory. Unwrap fewer faces at once, or close other programs."});
     }
   });
   using py::literals::operator""_a;

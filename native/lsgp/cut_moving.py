@@ -30,12 +30,19 @@ class Transition:
     exact: bool
 
     def power(self, exponent: int) -> Transition:
-        """This motion repeated, or its inverse."""
-        step = self if exponent >= 0 else self._inverse()
+        """This motion repeated, or its inverse.  Raises InputError."""
+        left = arguments.whole_number("exponent", exponent, -(2**31), "pass how often the motion is repeated")
+        step = self if left >= 0 else self._inverse()
+        left = abs(left)
         out = Transition(1 + 0j, 0j, self.exact)
-        for _ in range(abs(exponent)):
-            out = Transition(step.rotation * out.rotation, step(out.translation), self.exact)
+        while left:
+            if left % 2:
+                out = step._after(out)
+            step, left = step._after(step), left // 2
         return out
+
+    def _after(self, first: Transition) -> Transition:
+        return Transition(self.rotation * first.rotation, self(first.translation), self.exact)
 
     def _inverse(self) -> Transition:
         back = self.rotation.conjugate()

@@ -12,7 +12,7 @@ from .base import arguments
 from .base.arguments import FloatArray, IndexArray
 from .base.edge_keys import edge_keys
 from .errors import InputError
-from .surface import Surface
+from .surface import Surface, require_vertices
 
 # Of a vector's largest component: what is less is rounding, and the vector is across that axis.
 _ACROSS = 1e-6
@@ -28,8 +28,7 @@ def edge_directions(surface: Surface, edges: ArrayLike, *, up: ArrayLike | None 
     vectors have length 1 on the average over the area of these triangles, as directions beside them may have.
     Raises InputError: EDGE_NOT_IN_MESH where no triangle has an edge.
     """
-    arguments.require_type("surface", surface, Surface)
-    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    require_vertices(surface)
     pairs = arguments.index_rows("edges", edges, 2)
     arguments.require_indices("edges", pairs, len(surface.positions))
     upright = None if up is None else arguments.floats_of_shape("up", up, (3,))

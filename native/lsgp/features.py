@@ -10,7 +10,7 @@ from .base import arguments
 from .base.angles import arctan2
 from .base.arguments import FloatArray, IndexArray
 from .base.edge_keys import edge_keys
-from .surface import Surface
+from .surface import Surface, require_vertices
 
 
 def feature_edges(
@@ -23,8 +23,7 @@ def feature_edges(
         alone, and `Surface.borders`.
     Raises InputError.
     """
-    arguments.require_type("surface", surface, Surface)
-    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    require_vertices(surface)
     found = [np.empty((0, 2), np.int32)]
     sides = np.stack([surface.triangles, np.roll(surface.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     vertex_count = len(surface.positions)

@@ -20,6 +20,7 @@ def index_uv(triangles: ArrayLike, corner_uv: ArrayLike) -> tuple[NDArray[np.flo
     Raises InputError: WRONG_SHAPE, WRONG_DTYPE, INDEX_OUT_OF_RANGE.
     """
     vertices = arguments.index_rows("triangles", triangles, 3)
+    arguments.require_indices("triangles", vertices, np.iinfo(np.int32).max)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(vertices))
     mapped = ~np.isnan(uv).any(axis=(1, 2))
     vt, found = index_corners(vertices[mapped].ravel(), uv[mapped].reshape(-1, 2))
@@ -33,7 +34,7 @@ def index_corners(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """vt (k, 2), every (u, v) of a vertex once, in the order of their first corner, and its index at each corner, (c,).
 
-    vertices: (c,). uv: (c, 2), finite.
+    vertices: (c,), 0 or more. uv: (c, 2), without NaN.
     """
     first, index = _lsgp.distinct_corners(vertices, uv)
     return uv[first], index

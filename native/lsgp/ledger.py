@@ -21,7 +21,7 @@ from .base.edge_keys import edge_keys
 from .base.equality import EqualByContent
 from .base.short_repr import ShortRepr
 from .options import Options
-from .surface import Surface, surface_arrays
+from .surface import Surface, require_vertices, surface_arrays
 
 # Tolerance of the sum, radians: that of the library.
 CLOSED_WITHIN = 1e-6
@@ -92,7 +92,7 @@ def build_ledger(
     Only the number of positions matters. Raises InputError if cones are not vertices, the numbers of cones and angles
     differ, or triangles, edges and seams do not belong to the mesh.
     """
-    _require_surface(surface)
+    require_vertices(surface)
     gets_cones = arguments.flag("gets_cones", gets_cones)
     given = cone_arrays(cones, angles, Options() if options is None else options)
     if not len(surface.triangles):
@@ -130,7 +130,7 @@ def hold_complete(
 
 def part_surface(surface: Surface, part: LedgerPart) -> Surface:
     """One component as a surface of its own, with unchanged vertex indices; cuts may follow all of its edges."""
-    _require_surface(surface)
+    require_vertices(surface)
     arguments.require_type("part", part, LedgerPart)
     arguments.require_indices("part.triangles", part.triangles, len(surface.triangles))
     return surface_of_triangles(replace(surface, edges=None, cut_costs=None), part.triangles)
@@ -154,9 +154,3 @@ def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Su
     if surface.directions is not None:
         own["directions"] = surface.directions[triangles]
     return replace(surface, triangles=kept, **own)
-
-
-def _require_surface(surface: Surface) -> None:
-    arguments.require_type("surface", surface, Surface)
-    for name in ("triangles", "seams", "borders", "features"):
-        arguments.require_indices(name, getattr(surface, name), len(surface.positions))

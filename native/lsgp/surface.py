@@ -125,6 +125,15 @@ def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     )
 
 
+def require_vertices(surface: Surface) -> None:
+    """Raises InputError: INDEX_OUT_OF_RANGE where triangles or edges name vertices that the surface does not have."""
+    arguments.require_type("surface", surface, Surface)
+    for name in ("triangles", "edges", "seams", "borders", "features"):
+        indices = getattr(surface, name)
+        if indices is not None:
+            arguments.require_indices(name, indices, len(surface.positions))
+
+
 def has_strokes(surface: Surface) -> bool:
     """Whether several triangles have a direction of the texture, but not all."""
     if surface.directions is None:

@@ -12,7 +12,7 @@ from .base import arguments
 from .base.arguments import FloatArray
 from .base.equality import EqualByContent
 from .base.short_repr import ShortRepr
-from .surface import Surface
+from .surface import Surface, require_vertices
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -36,8 +36,7 @@ def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray,
 
     corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
     """
-    arguments.require_type("surface", surface, Surface)
-    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    require_vertices(surface)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
     length, dot, doubled = _first_sides(surface)
     with np.errstate(divide="ignore", invalid="ignore"):

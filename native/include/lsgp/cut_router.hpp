@@ -63,6 +63,7 @@ class LSGP_API CutRouter {
 };
 
 // The triangles of a layout that overlap others, ascending.  corner_uv: (3m, 2), not finite in those to leave out.
+// Throws WRONG_PARAMETER.
 LSGP_API std::vector<Index> overlapping_triangles(const CornerUv& corner_uv);
 
 }  // namespace lsgp

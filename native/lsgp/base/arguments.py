@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arguments of public functions: converted to the library's types, or refused by name.
 
-All raise InputError: WRONG_PARAMETER, WRONG_SHAPE, WRONG_DTYPE, INDEX_OUT_OF_RANGE.
+All raise InputError: WRONG_PARAMETER, WRONG_SHAPE, WRONG_DTYPE, INDEX_OUT_OF_RANGE; and SolverError (OUT_OF_MEMORY)
+where a copy of an array does not fit into memory, as one whose elements are the same number in memory may be too large.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sized
+from itertools import islice
 from numbers import Integral, Real
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ..errors import Elements, InputError
+from ..errors import Elements, InputError, SolverError
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
@@ -102,7 +104,7 @@ def floats(name: str, values: ArrayLike) -> FloatArray:
     if array.dtype.kind not in "fiu":
         raise InputError("WRONG_DTYPE", f"{name} holds {_held(array)}; pass numbers.")
     with np.errstate(over="ignore"):  # numbers too large for a double are infinite, which has an error of its own
-        return np.require(array, np.float64, ["C", "A"])
+        return contiguous(name, array, np.float64)
 
 
 def float_rows(name: str, values: ArrayLike, width: int) -> FloatArray:
@@ -174,11 +176,12 @@ def cone_angles(name: str, angles: Iterable[float | None] | None, count: int) ->
     if angles is None:
         return [None] * count
     try:
-        given = list(angles)
+        given = list(islice(angles, count + 1))  # there may be any number of them
     except TypeError:
         refuse(name, angles, "pass a number or None for each cone")
     if len(given) != count:
-        raise InputError("ANGLE_COUNT", f"There are {count} cones but {len(given)} {name}. Give one for each.")
+        found = len(angles) if isinstance(angles, Sized) else f"{len(given)} or more"
+        raise InputError("ANGLE_COUNT", f"There are {count} cones but {found} {name}. Give one for each.")
     return [
         None if angle is None else number(f"{name}[{i}]", angle, "pass a number or None for each cone")
         for i, angle in enumerate(given)
@@ -188,10 +191,25 @@ def cone_angles(name: str, angles: Iterable[float | None] | None, count: int) ->
 def _indices(name: str, array: NDArray[Any]) -> IndexArray:
     if array.dtype.kind not in "iu":
         raise InputError("WRONG_DTYPE", f"{name} holds {_held(array)}; pass whole numbers.")
-    for extreme in (array.max(), array.min()):
-        if not _INT32.min <= extreme <= _INT32.max:
-            raise InputError("INDEX_OUT_OF_RANGE", f"{name} holds {extreme}; indices must fit 32 bits.")
-    return np.require(array, np.int32, ["C", "A"])
+    converted = contiguous(name, array, np.int32)
+    if converted is not array:
+        for extreme in (array.max(), array.min()):
+            if not _INT32.min <= extreme <= _INT32.max:
+                raise InputError("INDEX_OUT_OF_RANGE", f"{name} holds {extreme}; indices must fit 32 bits.")
+    return converted
+
+
+def contiguous(name: str, array: NDArray[Any], dtype: DTypeLike) -> NDArray[Any]:
+    """Row by row and aligned in memory, a copy where it is not.  Raises SolverError: OUT_OF_MEMORY."""
+    try:
+        return np.require(array, dtype, ["C", "A"])
+    except MemoryError as error:
+        megabytes = math.ceil(array.size * np.dtype(dtype).itemsize / 1e6)
+        raise SolverError(
+            "OUT_OF_MEMORY",
+            f"{name} has shape {array.shape}, for which {megabytes} MB of memory are needed and not left. Pass fewer "
+            "elements.",
+        ) from error
 
 
 def _require_shape(name: str, array: NDArray[Any], fits: bool, expected: str) -> None:

@@ -13,7 +13,7 @@ from ..base import arguments
 from ..base.arguments import FloatArray
 from ..base.progress import Progress, Steps, share_of, tell
 from ..errors import Elements, InputError
-from ..surface import Surface
+from ..surface import Surface, require_vertices
 from .extrapolation import extrapolate
 from .texel_raster import (
     ComplexArray,
@@ -211,13 +211,12 @@ def _image(image: ArrayLike, normal_map: bool) -> NDArray[Any]:
         )
     if normal_map and channels < 2:
         raise InputError("WRONG_SHAPE", "A normal map has two channels or more, the image 1. Leave out normal_map.")
-    return np.ascontiguousarray(pixels)
+    return arguments.contiguous("image", pixels, pixels.dtype)
 
 
 def _coordinates(surface: Surface, corner_uv: ArrayLike) -> FloatArray:
     """(m, 3, 2), in the unit square or NaN."""
-    arguments.require_type("surface", surface, Surface)
-    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    require_vertices(surface)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
     mapped = ~np.isnan(uv).any(axis=(1, 2))
     if not mapped.any():

@@ -15,6 +15,7 @@
 #include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 
 namespace lsgp {
@@ -42,6 +43,8 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   }
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
+  require_connectivity(surface);
+  require_vertices(surface, options.sharp, "sharp edges");
   std::set<std::pair<Index, Index>> sharp;
   for (Index i = 0; i < options.sharp.rows(); ++i) sharp.insert(std::minmax(options.sharp(i, 0), options.sharp(i, 1)));
   const Cones given{cones, Array<std::optional<double>>(cones.size())};

@@ -69,6 +69,7 @@ void require_preferences(const Surface& surface, const CutPreferences& preferenc
   if (preferences.front && !(preferences.front->allFinite() && preferences.front->cwiseAbs().maxCoeff() > 0)) {
     throw Error(Code::wrong_parameter, "The front is not a direction. Give three finite numbers that are not all 0.");
   }
+  require_vertices(surface, preferences.sharp, "sharp edges");
   const Eigen::VectorXd& paint = preferences.paint;
   if (paint.size() == 0) return;
   if (paint.size() != surface.positions.rows()) {

@@ -191,6 +191,11 @@ ReroutedCut GrabbedCut::through(Index vertex) const {
 }
 
 std::vector<Index> overlapping_triangles(const CornerUv& corner_uv) {
+  require_countable(corner_uv.rows() / 3, "triangles");
+  if (corner_uv.rows() % 3 != 0) {
+    throw Error(Code::wrong_parameter,
+                concat("There are ", corner_uv.rows(), " texture coordinates. Give three for each triangle."));
+  }
   Eigen::VectorXcd position(corner_uv.rows());
   for (Eigen::Index corner = 0; corner < position.size(); ++corner) {
     position[corner] = {corner_uv(corner, 0), corner_uv(corner, 1)};

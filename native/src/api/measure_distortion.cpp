@@ -141,12 +141,12 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
                                               surface.triangles.size(), " corners of triangles. Give one for each."));
   }
+  if (cones) require_valid(surface, {*cones, Array<std::optional<double>>(cones->size())});
   Measurement out;
   out.island.assign(static_cast<std::size_t>(surface.triangles.rows()), none);
   MeasuredSurface measured = finite_triangles(surface, corner_uv);
   out.cut_edges.resize(0, 2);
   if (measured.triangles.empty()) return out;
-  if (cones) require_valid(surface, {*cones, Array<std::optional<double>>(cones->size())});
   const CornerUv uv = unit_scale(corner_uv, measured.triangles) * corner_uv;
   out.distortion = measure_triangles(surface, uv, measured.triangles);
 

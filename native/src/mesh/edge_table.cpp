@@ -40,7 +40,7 @@ EdgeTable::EdgeTable(const Surface& surface, const PerTriangle<char>& skip) {
 
 Index EdgeTable::find(Index a, Index b) const {
   const Index low = std::min(a, b), high = std::max(a, b);
-  if (low < 0 || high + 1 >= static_cast<Index>(bucket_.size())) return none;
+  if (low < 0 || high >= ssize(bucket_) - 1) return none;
   const auto begin = entries_.begin() + bucket_[low], end = entries_.begin() + bucket_[low + 1];
   const auto at = std::lower_bound(begin, end, Entry{high, 0});
   return at != end && at->high == high ? edge_of_entry_[at - entries_.begin()] : none;

@@ -24,20 +24,6 @@ constexpr double largest_cost = 1e6;          // of a cut per length
 constexpr double smallest_scale = 1e-6, largest_scale = 1e6;
 constexpr double rounding_of_sides = 1e-9;  // of the longest one
 
-void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
-  Array<Index> bad;
-  for (Index row = 0; row < pairs.rows(); ++row) {
-    for (const Index v : {pairs(row, 0), pairs(row, 1)}) {
-      if (v < 0 || v >= vertex_count) bad.push_back(v);
-    }
-  }
-  if (!bad.empty()) {
-    throw Error(Code::index_out_of_range,
-                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ",
-                       vertex_count - 1, " (", list(bad), "). Pass vertex pairs of this mesh."));
-  }
-}
-
 PerVertex<char> used_vertices(const Surface& surface) {
   PerVertex<char> used(surface.positions.rows(), 0);
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
@@ -199,7 +185,32 @@ void require_valid(const Options& options, const Pins& pins) {
               "method lsgp, or unpin them.");
 }
 
+void require_countable(std::ptrdiff_t count, const char* what) {
+  constexpr std::ptrdiff_t most = std::numeric_limits<Index>::max() / 3;
+  if (count <= most) return;
+  throw Error(Code::wrong_parameter, concat("There are ", count, " ", what, "; up to ", most,
+                                            " can be computed with. Unwrap fewer faces at once."));
+}
+
+void require_vertices(const Surface& surface, const VertexPairs& pairs, const char* what) {
+  const Index vertex_count = static_cast<Index>(surface.positions.rows());
+  require_countable(pairs.rows(), what);
+  Array<Index> bad;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    for (const Index v : {pairs(row, 0), pairs(row, 1)}) {
+      if (v < 0 || v >= vertex_count) bad.push_back(v);
+    }
+  }
+  if (!bad.empty()) {
+    throw Error(Code::index_out_of_range,
+                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ",
+                       vertex_count - 1, " (", list(bad), "). Pass vertex pairs of this mesh."));
+  }
+}
+
 void require_connectivity(const Surface& surface) {
+  require_countable(surface.positions.rows(), "vertices");
+  require_countable(surface.triangles.rows(), "triangles");
   const Index n = static_cast<Index>(surface.positions.rows());
   const Triangles& triangles = surface.triangles;
   if (triangles.rows() == 0) throw Error(Code::empty_mesh, "The mesh has no faces. Add faces to unwrap.");
@@ -229,11 +240,11 @@ void require_connectivity(const Surface& surface) {
     throw Error(Code::degenerate_mesh, "All triangles have an edge without length. Restore the surface's shape.",
                 {ElementKind::triangles, collapsed});
   }
-  if (surface.edges) require_indices(*surface.edges, n, "edges");
+  if (surface.edges) require_vertices(surface, *surface.edges, "edges");
   require_cut_costs(surface);
-  require_indices(surface.seams, n, "seams");
-  require_indices(surface.borders, n, "borders");
-  require_indices(surface.features, n, "features");
+  require_vertices(surface, surface.seams, "seams");
+  require_vertices(surface, surface.borders, "borders");
+  require_vertices(surface, surface.features, "features");
 }
 
 void require_valid(const Surface& surface) {

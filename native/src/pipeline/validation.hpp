@@ -2,6 +2,8 @@
 // Validation of the caller's arrays, before any topology is built.
 #pragma once
 
+#include <cstddef>
+
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
 #include "lsgp/placement.hpp"
@@ -9,7 +11,14 @@
 
 namespace lsgp {
 
-// Checks that triangles, edges and seams refer to vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
+// Checks that so many elements can be counted, with three corners each, in an Index. Throws WRONG_PARAMETER.
+void require_countable(std::ptrdiff_t count, const char* what);
+
+// Checks that pairs refer to vertices. Throws INDEX_OUT_OF_RANGE.
+void require_vertices(const Surface& surface, const VertexPairs& pairs, const char* what);
+
+// Checks that triangles, edges and seams refer to vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE,
+// WRONG_PARAMETER.
 void require_connectivity(const Surface& surface);
 
 // Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH,
