@@ -136,6 +136,23 @@ def test_only_false_stops(answer: object) -> None:
     assert digest(RUNS["torus"](lambda done: answer)) == digest(RUNS["torus"]())
 
 
+def test_a_false_of_numpy_stops_as_well() -> None:
+    """Callers compare: `done < limit` is one of its bools where either is a number of numpy."""
+    result = RUNS["torus"]()
+    calls: dict[str, Callable[..., object]] = {
+        "native": RUNS["torus"],
+        "polish": lambda progress: lsgp.remesh_to_quads(surface(CUBE), target=50, polish=True, progress=progress),
+    }
+    if lsgp.packer_name() is not None:
+        calls["pack"] = lambda progress: lsgp.pack_islands(result.corner_uv, result.island, progress=progress)
+    for call in calls.values():
+        heard: list[float] = []
+        call(heard.append)
+        for limit in np.array([heard[0], heard[-2]]):
+            with pytest.raises(lsgp.Cancelled):
+                call(lambda done, limit=limit: done < limit)
+
+
 def test_progress_is_told_on_the_thread_that_called() -> None:
     heard: dict[str, set[int]] = {}
 

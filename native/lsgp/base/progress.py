@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from ..errors import Cancelled
 
 Progress = Callable[[float], bool | None]
@@ -19,8 +21,9 @@ def share_of(progress: Progress | None, begin: float, end: float) -> Progress | 
 
 
 def tell(progress: Progress | None, done: float) -> None:
-    """Tell the fraction done.  Raises Cancelled if the answer is False."""
-    if progress is not None and progress(done) is False:
+    """Tell the fraction done.  Raises Cancelled if the answer is False, also as a bool of numpy."""
+    answer = None if progress is None else progress(done)
+    if isinstance(answer, bool | np.bool_) and not answer:
         raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
 
 

@@ -50,7 +50,9 @@ _MOST_AROUND = 2000
 # where the system tells what threads do, up to so many seconds, and elsewhere for so many.
 _MOST_SETTLING, _SETTLING = 1.0, 0.005
 _TASKS = Path("/proc/self/task")
-_TINY = np.finfo(float).tiny
+_TINY, _EPSILON = float(np.finfo(float).tiny), float(np.finfo(float).eps)
+# Of a square around islands whose coordinates are about 1, or all 0.
+_NO_SIZE = 1e-200
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,13 @@ class Packer:
         return found
 
     def _first(self, place: ComplexArray) -> Layout:
-        least = self._estimated_side(place)
+        least, farthest = self._estimated_side(place), float(np.abs(place).max())
+        if least <= max(self._raster * _EPSILON * farthest, _NO_SIZE):
+            raise InputError(
+                "WRONG_PARAMETER",
+                f"The square that the islands fill is {least / max(farthest, least):.2g} of their distance from the "
+                "origin, too small to place them in. Move them to the origin, or leave out those that are points.",
+            )
         for _ in range(2 if self._have_room() else 0):
             side = least
             for _ in range(_MOST_GROWTHS):

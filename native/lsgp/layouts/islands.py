@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
+from ..base.unit_size import unit_exponent
 from ..errors import InputError
 
 # Texture coordinates come in single precision; an island below this share of its distance to the origin is a point.
@@ -39,7 +40,8 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
     broken[island[(island >= 0) & ~finite]] = True
     taken = np.flatnonzero((island >= 0) & ~np.append(broken, True)[island])
     of_triangle = island[taken]
-    new, old = _as_complex(corner_uv[taken]), _as_complex(old_uv[taken])
+    exponents = tuple(unit_exponent(uv[taken]) for uv in (corner_uv, old_uv))
+    new, old = (_as_complex(np.ldexp(uv[taken], -e)) for uv, e in zip((corner_uv, old_uv), exponents, strict=True))
 
     corners = np.maximum(3 * np.bincount(of_triangle, minlength=count), 1)
     new_middle, old_middle = _sums(of_triangle, new, count) / corners, _sums(of_triangle, old, count) / corners
@@ -53,10 +55,10 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
     turned = abs(along) > _NO_TURN * sizes
     turn = np.where(turned, along, 1.0) / np.where(turned, abs(along), 1.0)
     factor = np.where(movable, turn * old_size / np.where(movable, new_size, 1.0), 1.0)
-    target = np.where(movable, old_middle, new_middle)
-    moved = factor[of_triangle, None] * new + target[of_triangle, None]
+    moved = factor[of_triangle, None] * new + old_middle[of_triangle, None]
     moves = movable[of_triangle]
-    out[taken[moves]] = moved[moves].view(np.float64).reshape(-1, 3, 2)
+    with np.errstate(over="ignore"):  # where the old places were next to the largest number
+        out[taken[moves]] = np.ldexp(moved[moves].view(np.float64).reshape(-1, 3, 2), exponents[1])
     return out
 
 

@@ -18,13 +18,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
+from ..base.unit_size import unit_exponent
 from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
 from .chart_packer import Square, find_xatlas
 from .layout_search import LayoutSearch, Turned, islands_of
 from .stacking import find_stacks
-from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
+from .texels import TexelLayout, at_texel_density, outside_findings, tile_count
 from .udim_packing import spread_over_tiles
 
 Pack = Literal["tight", "shelves"]
@@ -86,7 +87,7 @@ class Packing:
             if self.pack != "tight" and self.udim is None:
                 arguments.refuse("margin", self.margin, 'pass it with pack="tight", or leave it out')
         if self.udim is not None:
-            _tile_count(self.udim)
+            tile_count(self.udim)
             if self.pack == SHELVES:
                 arguments.refuse("udim", self.udim, 'pass it with pack="tight", or leave it out')
         if self.stack is not None:
@@ -160,7 +161,7 @@ def pack_islands(
     if not isinstance(turned, bool | np.bool_) and not (isinstance(turned, str) and turned == "quarters"):
         arguments.refuse("turned", turned, 'pass True, False or "quarters"')
     may_turn: Turned = "quarters" if isinstance(turned, str) else bool(turned)
-    tiles = 1 if udim is None else _tile_count(udim)
+    tiles = 1 if udim is None else tile_count(udim)
     if tiles > 1 and not square.fill:
         arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")
     arguments.require_callable(progress)
@@ -181,21 +182,32 @@ def pack_islands(
     if asked in kept.layouts:
         tell(progress, 1.0)
         return kept.layouts[asked].copy()
+    exponent = unit_exponent(uv[solved], 0.0 if square.fill else square.margin)
+    unit_uv = np.ldexp(uv[solved], -exponent)
     if tiles > 1:
-        out[solved] = spread_over_tiles(uv[solved], island[solved], square.margin, tiles, may_turn, progress)
+        out[solved] = spread_over_tiles(unit_uv, island[solved], square.margin, tiles, may_turn, progress)
     else:
         searched = given, square, bool(may_turn)
         # One that is stopped is not kept.
+        unit_square = square if square.fill else replace(square, margin=math.ldexp(square.margin, -exponent))
         search = kept.searches.pop(searched, None)
         if search is None:
             tell(progress, 0.0)
-            islands = islands_of(uv[solved], island[solved])
-            search = LayoutSearch(islands, square, share_of(progress, 0.0, _PREPARING))
+            islands = islands_of(unit_uv, island[solved])
+            search = LayoutSearch(islands, unit_square, share_of(progress, 0.0, _PREPARING))
             progress = share_of(progress, _PREPARING, 1.0)
         found = search.best(may_turn, progress)
         kept.searches[searched] = search
         place = (found.place - found.low) / (found.side if square.fill else 1.0)
-        out[solved] = np.stack([place.real, place.imag], axis=-1)[search.islands.triangles] + square.margin
+        packed = np.stack([place.real, place.imag], axis=-1)[search.islands.triangles] + unit_square.margin
+        with np.errstate(over="ignore"):
+            out[solved] = packed if square.fill else np.ldexp(packed, exponent)
+        if not np.isfinite(out[solved]).all():
+            raise InputError(
+                "WRONG_PARAMETER",
+                "The square around the packed islands is larger than numbers can hold. Scale corner_uv and the margin "
+                "down.",
+            )
     kept.layouts[asked] = out.copy()
     return out
 
@@ -205,14 +217,6 @@ def _digest(uv: FloatArray, island: IndexArray) -> bytes:
     digest.update(np.ascontiguousarray(uv))
     digest.update(np.ascontiguousarray(island))
     return digest.digest()
-
-
-def _tile_count(udim: int) -> int:
-    remedy = f"pass a number of tiles from 1 to {MOST_TILES}"
-    count = arguments.whole_number("udim", udim, 1, remedy)
-    if count > MOST_TILES:
-        arguments.refuse("udim", udim, remedy)
-    return count
 
 
 def _square(margin: float, fill: bool) -> Square:

@@ -15,6 +15,7 @@ from ..base.arguments import FloatArray
 from ..base.equality import EqualByContent
 from ..base.progress import Progress, tell
 from ..base.short_repr import ShortRepr
+from ..base.unit_size import unit_exponent
 from .layout_search import Islands, islands_of
 
 Indices = NDArray[np.int64]
@@ -35,9 +36,9 @@ class Stacks(EqualByContent, ShortRepr):
     kept: NDArray[np.bool_]
     count: int
 
-    def stacked(self, corner_uv: FloatArray) -> FloatArray:
-        """The coordinates, (m, 3, 2), with each island on the first one of its shape, exactly."""
-        return corner_uv.reshape(-1, 2)[self.source]
+    def stacked(self, corner_uv: ArrayLike) -> FloatArray:
+        """The coordinates, (m, 3, 2), with each island on the first one of its shape, exactly.  Raises InputError."""
+        return arguments.corner_coordinates("corner_uv", corner_uv, len(self.source)).reshape(-1, 2)[self.source]
 
 
 def find_stacks(
@@ -57,6 +58,7 @@ def find_stacks(
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     may_mirror = arguments.flag("mirrored", mirrored)
+    uv = np.ldexp(uv, -unit_exponent(uv[island >= 0]))
     source = np.arange(3 * len(island)).reshape(-1, 3)
     kept = np.ones(len(island), bool)
     found: dict[tuple[int, int], list[_Shape]] = {}

@@ -6,12 +6,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
+from ..base.frozen import set_field
 from ..errors import Elements, Finding, InputError
 from ..lattice import island_boxes
 from ..results import Result
@@ -52,12 +54,41 @@ class TexelLayout:
     density: `TexelDensity.mean` of the whole layout, texels per unit of length. texture_size: side of the texture or of
     each UDIM tile, in texels. udim: the most UDIM tiles that islands are spread over, from 1001 on, each island inside
     one tile; None: islands are not rearranged. margin: texels around each island, with udim.
+    Raises InputError: WRONG_PARAMETER.
     """
 
     density: float
     texture_size: int
     udim: int | None = None
     margin: float = DEFAULT_MARGIN
+
+    def __post_init__(self) -> None:
+        density = arguments.positive("density", self.density, "pass texels per unit of length, above 0")
+        size = arguments.whole_number("texture_size", self.texture_size, 1, "pass the number of texels of a side")
+        margin = arguments.number("margin", self.margin, "pass texels around each island")
+        tiles = None if self.udim is None else tile_count(self.udim)
+        if not 0 <= margin < (math.inf if tiles is None else size / 2):
+            arguments.refuse("margin", self.margin, "pass texels around each island, less than half a tile")
+        for name, value in {"density": density, "texture_size": size, "udim": tiles, "margin": margin}.items():
+            set_field(self, name, value)
+
+
+def tile_count(udim: int) -> int:
+    """A number of UDIM tiles.  Raises InputError."""
+    remedy = f"pass a number of tiles from 1 to {MOST_TILES}"
+    count = arguments.whole_number("udim", udim, 1, remedy)
+    if count > MOST_TILES:
+        arguments.refuse("udim", udim, remedy)
+    return count
+
+
+def refuse_of_seamless() -> NoReturn:
+    """Raises InputError: a seamless layout has its own texel density."""
+    raise InputError(
+        "WRONG_PARAMETER",
+        "A seamless layout has the size of its tiles. Choose that by tiles or tile_size, or leave the texel density "
+        "out.",
+    )
 
 
 def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> FloatArray:
@@ -109,28 +140,17 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     """
     arguments.require_type("result", result, Result)
     arguments.require_type("layout", layout, TexelLayout)
-    density = arguments.positive("density", layout.density, "pass texels per unit of length, above 0")
-    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass the number of texels of a side")
     if result.seamless is not None:
-        raise InputError(
-            "WRONG_PARAMETER",
-            "A seamless layout has the size of its tiles. Choose that by tiles or tile_size, or leave the texel "
-            "density out.",
-        )
+        refuse_of_seamless()
     with np.errstate(over="ignore", invalid="ignore"):
-        uv = result.corner_uv * np.divide(density, texel_density(surface, result.corner_uv, size).mean)
+        mean = texel_density(surface, result.corner_uv, layout.texture_size).mean
+        uv = result.corner_uv * np.divide(layout.density, mean)
     if not np.isfinite(uv[result.solved]).all():
         arguments.refuse("density", layout.density, "pass fewer texels per unit, which is more than numbers can hold")
     if layout.udim is None:
         return replace(result, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)])
-    tiles = arguments.whole_number("udim", layout.udim, 1, f"pass a number of tiles from 1 to {MOST_TILES}")
-    if tiles > MOST_TILES:
-        arguments.refuse("udim", tiles, f"pass a number of tiles from 1 to {MOST_TILES}")
-    margin = arguments.number("margin", layout.margin, "pass texels around each island")
-    if not 0 <= margin < size / 2:
-        arguments.refuse("margin", layout.margin, "pass texels around each island, less than half a tile")
     boxes = island_boxes(uv, result.island)
-    shifts = _tile_places(boxes, result.island, TexelLayout(density, size, tiles, margin))
+    shifts = _tile_places(boxes, result.island, layout)
     solved = result.island >= 0
     uv[solved] += shifts[result.island[solved], None]
     return replace(result, corner_uv=uv)

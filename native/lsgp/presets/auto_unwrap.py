@@ -17,7 +17,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
 from ..errors import InputError
 from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
-from ..layouts.texels import TexelLayout, at_texel_density, with_tiny_findings
+from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, with_tiny_findings
 from ..options import Options, Seamless
 from ..results import Result
 from ..surface import Pins, Surface, has_strokes
@@ -148,6 +148,8 @@ def auto_unwrap(
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
+        if chosen.seamless is not None:
+            refuse_of_seamless()
     packing = Packing(pack, margin, udim, stack)
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))

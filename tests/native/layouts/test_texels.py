@@ -162,21 +162,21 @@ def test_more_than_a_row_of_tiles_goes_on_in_the_next_row() -> None:
 
 
 @pytest.mark.parametrize(
-    ("layout", "match"),
+    ("changed", "match"),
     [
-        (TexelLayout(0.0, SIZE), "density is 0.0"),
-        (TexelLayout(float("nan"), SIZE), "density is nan"),
-        (TexelLayout(10.0, 0), "texture_size is 0"),
-        (TexelLayout(10.0, 12.5), "texture_size is 12.5"),
-        (TexelLayout(10.0, SIZE, udim=0), "udim is 0"),
-        (TexelLayout(10.0, SIZE, udim=101), "udim is 101"),
-        (TexelLayout(10.0, SIZE, udim=2, margin=SIZE / 2), "less than half a tile"),
-        (TexelLayout(10.0, SIZE, udim=2, margin=-1.0), "margin is -1.0"),
+        ({"density": 0.0}, "density is 0.0"),
+        ({"density": float("nan")}, "density is nan"),
+        ({"texture_size": 0}, "texture_size is 0"),
+        ({"texture_size": 12.5}, "texture_size is 12.5"),
+        ({"udim": 0}, "udim is 0"),
+        ({"udim": 101}, "udim is 101"),
+        ({"udim": 2, "margin": SIZE / 2}, "less than half a tile"),
+        ({"udim": 2, "margin": -1.0}, "margin is -1.0"),
     ],
 )
-def test_numbers_that_cannot_be_used_are_named(split: lsgp.Result, layout: TexelLayout, match: str) -> None:
+def test_numbers_that_cannot_be_used_are_named_before_there_is_a_map(changed: dict[str, float], match: str) -> None:
     with pytest.raises(lsgp.InputError, match=match):
-        at_texel_density(PARTS, split, layout)
+        TexelLayout(**{"density": 10.0, "texture_size": SIZE} | changed)
 
 
 def test_seamless_layouts_and_pins_have_a_size_of_their_own() -> None:
