@@ -21,6 +21,7 @@ with atheris.instrument_imports(include=["lsgp"]):
     import lsgp
 
 import numpy as np
+from public_calls import FUNCTIONS
 from result_check import undeclared_faults
 
 TYPES = ["f8", "f4", "i4", "i8", "u8", "u1", "?", "c16", "O", "S4"]
@@ -211,7 +212,27 @@ def quads(data: Data, on: lsgp.Surface) -> None:
     assert np.isfinite(found.positions).all()
 
 
-VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure, quads]
+def any_function(data: Data, on: lsgp.Surface) -> None:
+    """Any public function, with some of the arguments that it accepts replaced."""
+    function, accepted = FUNCTIONS[pick(data, sorted(FUNCTIONS))]
+    given = dict(accepted)
+    for name in accepted:
+        if data.ConsumeIntInRange(0, 2):
+            continue
+        value = accepted[name]
+        if isinstance(value, np.ndarray) and value.dtype.kind in "fi":
+            given[name] = array(data, max(value.ndim, 1), value)
+        elif name == "surface":
+            given[name] = on
+        elif name not in SLOW:
+            given[name] = number(data, value, 0, -1, 2**31 - 1)
+    with contextlib.suppress(TypeError) if "progress" in given else contextlib.nullcontext():
+        function(**given)
+
+
+# With these, what is asked for may take any time.
+SLOW = {"target", "size", "triangles", "count", "margin", "margins", "options", "preset"}
+VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure, quads, any_function]
 
 
 def one_input(raw: bytes) -> None:

@@ -157,3 +157,95 @@ def test_a_mirror_plane_that_is_too_far_away() -> None:
     ball = surface(meshes.bumpy_sphere(2))
     placed = lsgp.place_cones(ball, symmetric=True, mirror=([1.7e308, -1.7e308, 1.7e308], [1, -1, 1]))
     assert codes(placed.warnings) == ["NOT_SYMMETRIC"]
+
+
+@pytest.mark.parametrize("vertex", [-1, 42, 2**31 - 2, 2**31 - 1, -(2**31)])
+def test_sharp_edges_between_no_vertices(vertex: int) -> None:
+    """The number after the largest of all has no place in an index."""
+    mesh = meshes.bumpy_sphere(1)
+    assert vertex >= len(mesh.positions) or vertex < 0
+    ball = lsgp.Surface(mesh.positions, mesh.triangles, meshes.edges_of(mesh.triangles))
+    for call in (lsgp.cut_costs, lsgp.crease_borders):
+        for edge in ([vertex, vertex], [0, vertex], [vertex, 1]):
+            with pytest.raises(lsgp.InputError, match="sharp edges name") as caught:
+                call(ball, sharp=[[0, 1], edge])
+            assert caught.value.code == "INDEX_OUT_OF_RANGE"
+
+
+@pytest.mark.parametrize("vertex", [-1, -(2**31), 2**31 - 1])
+def test_texture_coordinates_of_no_vertex(vertex: int) -> None:
+    with pytest.raises(lsgp.InputError, match=f"holds {vertex}") as caught:
+        lsgp.index_uv([[0, 1, 2], [1, vertex, 2]], np.zeros((2, 3, 2)))
+    assert caught.value.code == "INDEX_OUT_OF_RANGE"
+
+
+def test_texture_coordinates_of_the_last_vertices_of_a_large_mesh() -> None:
+    """Memory goes with the triangles, not with the largest vertex."""
+    triangles, uv = np.array([[0, 1, 2], [1, 3, 2]]), np.random.default_rng(0).random((2, 3, 2)).round(1)
+    for found, expected in zip(lsgp.index_uv(triangles + 2**31 - 5, uv), lsgp.index_uv(triangles, uv), strict=True):
+        assert np.array_equal(found, expected)
+
+
+@pytest.mark.parametrize("value", [0.0, 1])
+def test_arrays_that_no_memory_can_hold(value: float) -> None:
+    """All elements of such an array are one number in memory; what is passed on has each."""
+    rows = np.broadcast_to(value, (2**50, 3))
+    wanted = {0.0: lambda: lsgp.Surface(rows, [[0, 1, 2]]), 1: lambda: lsgp.Surface(np.eye(3), rows)}
+    with pytest.raises(lsgp.SolverError, match=r"needed and not left") as caught:
+        wanted[value]()
+    assert caught.value.code == "OUT_OF_MEMORY" and str(2**50) in caught.value.message
+
+
+TRIANGLE = np.array([[[0, 0], [1, 0], [0, 1.0]]])
+needs_packer = pytest.mark.skipif(lsgp.packer_name() is None, reason="takes the package xatlas")
+
+
+@needs_packer
+@pytest.mark.parametrize("fill", [True, False])
+@pytest.mark.parametrize("size", [2.0**-500, 2.0**-30, 2.0**600, 2.0**1015])
+def test_islands_of_any_size_are_packed_alike(size: float, fill: bool) -> None:
+    """Areas are squares of coordinates, which overflow long before these do."""
+    uv, island, margin = np.repeat(TRIANGLE, 5, axis=0), np.arange(5), 0.01
+    expected = lsgp.pack_islands(uv, island, margin, fill=fill)
+    found = lsgp.pack_islands(size * uv, island, margin if fill else size * margin, fill=fill)
+    assert np.array_equal(found, expected if fill else size * expected)
+
+
+@needs_packer
+def test_islands_that_no_square_can_hold_are_refused() -> None:
+    island = np.arange(100)
+    for uv in (np.full((100, 3, 2), 1e160), np.repeat(TRIANGLE, 100, axis=0) + 1e160):
+        for fill in (True, False):
+            with pytest.raises(lsgp.InputError, match="Move them to the origin"):
+                lsgp.pack_islands(uv, island, fill=fill)
+    with pytest.raises(lsgp.InputError, match="larger than numbers can hold"):
+        lsgp.pack_islands(np.repeat(1.7e308 * TRIANGLE, 100, axis=0), island, fill=False)
+    for place in (0.0, 0.5):
+        with pytest.raises(lsgp.InputError, match="leave out those that are points"):
+            lsgp.pack_islands(np.full((2, 3, 2), place), [0, 1])
+
+
+@pytest.mark.parametrize("size", [2.0**-500, 2.0**600, 2.0**1000])
+def test_islands_of_any_size_are_placed_and_stacked_alike(size: float) -> None:
+    square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1.0]]])
+    uv, island = np.concatenate([square, 2 * square + 5, square[:, :, ::-1] @ np.diag([1, -1]) + 9]), [0, 0, 1, 1, 2, 2]
+    old = np.random.default_rng(0).random(uv.shape)
+    assert np.array_equal(lsgp.fit_placement(size * uv, old, island), lsgp.fit_placement(uv, old, island))
+    assert np.array_equal(lsgp.fit_placement(uv, size * old, island), size * lsgp.fit_placement(uv, old, island))
+    assert lsgp.find_stacks(size * uv, island) == lsgp.find_stacks(uv, island)
+    assert lsgp.find_stacks(uv, island).count == 1
+
+
+@pytest.mark.parametrize("times", [-(2**31), -5, 0, 7, 2**31 - 1])
+def test_a_motion_repeated_any_number_of_times(times: int) -> None:
+    quarter = lsgp.Transition(1j, 3 + 0j, True)
+    assert quarter.power(times) == quarter.power(times % 4)
+
+
+def test_a_texel_layout_is_refused_before_the_map(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The number of tiles, and that of a seamless layout, are known before anything is unwrapped."""
+    monkeypatch.setattr(lsgp.Solver, "parameterize", lambda *_, **__: pytest.fail("unwrapped"))
+    with pytest.raises(lsgp.InputError, match="udim is 1000"):
+        lsgp.TexelLayout(10.0, 1024, udim=1000)
+    with pytest.raises(lsgp.InputError, match="has the size of its tiles"):
+        lsgp.auto_unwrap(surface(meshes.cube(2)), preset="tile", texels=lsgp.TexelLayout(10.0, 1024))
