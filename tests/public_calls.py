@@ -155,7 +155,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "find_stacks": (
         lsgp.find_stacks,
-        {"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "mirrored": True},
+        {"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "mirrored": True, "progress": None},
     ),
     "Stacks.stacked": (
         lsgp.find_stacks(FREE_RESULT.corner_uv, FREE_RESULT.island).stacked,
@@ -166,14 +166,14 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.pad_image,
         {
             **{"image": np.ones((8, 8, 3), np.uint8), "surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv},
-            **{"margin": 2, "normal_map": True},
+            **{"margin": 2, "normal_map": True, "progress": None},
         },
     ),
     "pad_mip_levels": (
         lsgp.pad_mip_levels,
         {
             **{"image": np.ones((8, 8, 3), np.uint8), "surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv},
-            **{"margins": [2, 1], "normal_map": True},
+            **{"margins": [2, 1], "normal_map": True, "progress": None},
         },
     ),
     "build_ledger": (
