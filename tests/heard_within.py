@@ -22,6 +22,7 @@ from typing import Any
 import lsgp
 import numpy as np
 from large_meshes import FAMILIES
+from meshes import edges_of
 
 Progress = Callable[[float], bool | None]
 Call = Callable[[Progress | None], object]
@@ -113,6 +114,11 @@ def _stacks(surface: lsgp.Surface) -> Call:
     return lambda tell: lsgp.find_stacks(of.corner_uv, of.island, mirrored=True, progress=tell)
 
 
+def _costs(surface: lsgp.Surface) -> Call:
+    with_edges = dataclasses.replace(surface, edges=edges_of(surface.triangles))
+    return lambda tell: lsgp.cut_costs(with_edges, [0.0, -1.0, 0.2], progress=tell)
+
+
 JOBS: dict[str, Callable[[lsgp.Surface], Call]] = {
     "paint": _auto(),
     "bake": _auto(preset="bake"),
@@ -133,7 +139,7 @@ JOBS: dict[str, Callable[[lsgp.Surface], Call]] = {
     "gutters": _gutters,
     "measure": _measure,
     "gains": lambda surface: lambda tell: lsgp.cone_gains(surface, progress=tell),
-    "costs": lambda surface: lambda tell: lsgp.cut_costs(surface, [0.0, -1.0, 0.2], progress=tell),
+    "costs": _costs,
     "borders": lambda surface: lambda tell: lsgp.crease_borders(surface, progress=tell),
     "cuts": lambda surface: lambda tell: lsgp.find_cuts(surface, _scattered(surface), progress=tell),
     "angles": lambda surface: lambda tell: lsgp.prescribe_curvature(surface, _scattered(surface), progress=tell),

@@ -135,6 +135,19 @@ class PatchRounding {
     return at_border_[v] - after >= 1 && at_border_[v] - after <= widest;
   }
 
+  // one^T other, some columns at a time.
+  static Eigen::MatrixXd product(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+    constexpr Eigen::Index block = 64;
+    Eigen::MatrixXd out(one.cols(), other.cols());
+    for (Eigen::Index first = 0, width = 0; first < other.cols(); first += width) {
+      const Eigen::Index left = other.cols() - first;
+      width = left < 2 * block ? left : block;
+      out.middleCols(first, width).noalias() = one.transpose() * other.middleCols(first, width);
+      checkpoint(static_cast<double>(one.rows() * one.cols() * width));
+    }
+    return out;
+  }
+
   // Adds missing curvature to candidates, and moves it from one to another, as long as that lowers the variance.
   bool choose(const Array<Index>& candidates) {
     const Eigen::Index count = ssize(candidates);
@@ -145,7 +158,7 @@ class PatchRounding {
     }
     const Eigen::MatrixXd responses = quarter * centered(solver_->solve(impulses));
     const Eigen::MatrixXd weighted = geometry_.vertex_area.asDiagonal() * responses;
-    const Eigen::MatrixXd form = responses.transpose() * weighted;
+    const Eigen::MatrixXd form = product(responses, weighted);
     Eigen::VectorXd slope = weighted.transpose() * rest_;
     const auto move = [&](Eigen::Index c, Index by) {
       moved_[candidates[c]] += by;
