@@ -17,7 +17,8 @@ def first_at_place(positions: FloatArray) -> IndexArray:
 
     positions: (n, 3). A place that is not finite has one vertex only.
     """
-    exact = np.ascontiguousarray(positions + 0.0)  # -0 is 0
+    with np.errstate(invalid="ignore"):  # a NaN of any kind
+        exact = np.ascontiguousarray(positions + 0.0)  # -0 is 0
     mixed = (exact.view(np.uint64) * _SPREAD).sum(axis=1, dtype=np.uint64)
     _, index, inverse = np.unique(mixed, return_index=True, return_inverse=True)
     first = index[inverse].astype(np.int32)

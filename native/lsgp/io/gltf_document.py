@@ -74,6 +74,7 @@ class Document:
         self.size = size
         self._buffers = len(buffers)
         self._written = 0
+        self._text_lengths: dict[int, int] = {}
         sources = [memoryview(buffer) for buffer in buffers]
         self.views = [_view(view, sources) for view in content.get("bufferViews", [])]
         self._largest = max((view.end - view.begin for view in self.views), default=0)
@@ -86,6 +87,12 @@ class Document:
     def count(self, accessor: Any) -> int:
         """How many elements an accessor has, at least one.  Raises InputError."""
         return whole_number(self.accessor(accessor), "count", least=1)
+
+    def text_length(self, accessor: int) -> int:
+        """About how long an accessor is in the JSON, as long as it is the one of before.  Raises InputError."""
+        if accessor not in self._text_lengths:
+            self._text_lengths[accessor] = len(json.dumps(self.accessor(accessor)))
+        return self._text_lengths[accessor]
 
     def rows(self, accessor: Any) -> NDArray[np.uint8]:
         """The elements of an accessor as bytes, (count, bytes of an element).  Raises InputError."""

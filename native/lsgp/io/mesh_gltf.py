@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import base64
 import contextlib
-import json
 import mimetypes
 from collections import Counter
 from collections.abc import Iterator
@@ -401,7 +400,7 @@ def _taken(document: Document, accessor: int, vertex: NDArray[np.int64], uses: C
     if len(rows) <= vertex.max(initial=-1):
         raise malformed("an attribute has fewer elements than its primitive has vertices.")
     if uses[accessor] > 1:  # it stays for others, and all that it says is written again
-        document.require_room(len(json.dumps(old)))
+        document.require_room(document.text_length(accessor))
     new = old | {"bufferView": document.add_view(rows[vertex], VERTICES), "count": len(vertex)}
     for name in ("byteOffset", "min", "max"):
         new.pop(name, None)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
-from ..errors import Finding
+from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
 from .mesh_gltf import unsolved_at_origin
 from .mesh_ply import CORNER_LISTS, read_text_tables, structured
@@ -41,11 +41,13 @@ def format_ply(
     text or binary then stay. A vertex with several coordinates is split: the vertex stays where it is, with its first
     ones, and those with the others come after all of the file's, so that what refers to vertices does not change.
     A polygon with a NaN keeps its old coordinates; where it has none, they are 0.
-    Takes plyfile.  Raises InputError: MALFORMED_FILE where that does not read the source, as it reads more of it than
-    `read_ply`.
+    Takes plyfile.  Raises InputError: EMPTY_MESH; MALFORMED_FILE where that does not read the source, as it reads more
+    of it than `read_ply`.
     """
     from plyfile import PlyData
 
+    if not len(mesh.positions):
+        raise InputError("EMPTY_MESH", "A mesh without vertices has no coordinates to write. Give one with some.")
     ply = _bare(mesh) if source is None else _read_as_it_is(source, mesh)
     corner_uv, missing = _with_old(ply["vertex"].data, mesh, corner_uv)
     vertex, uv, corners = _split(mesh, corner_uv)

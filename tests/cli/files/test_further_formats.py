@@ -79,6 +79,16 @@ def test_a_ply_that_its_writer_does_not_read_is_refused(tmp_path: Path, old: byt
         assert caught.value.code == "MALFORMED_FILE" and not (tmp_path / "out.ply").exists()
 
 
+@pytest.mark.parametrize("source", [b"ply\nformat ascii 1.0\nend_header\n", b"OFF\n0 0 0\n"])
+def test_a_mesh_without_vertices_is_no_ply(tmp_path: Path, source: bytes) -> None:
+    pytest.importorskip("plyfile")
+    path = tmp_path / ("a.off" if source.startswith(b"OFF") else "a.ply")
+    path.write_bytes(source)
+    with pytest.raises(InputError) as caught:
+        write_mesh_file(tmp_path / "out.ply", read_mesh_file(path), np.empty((0, 3, 2)))
+    assert caught.value.code == "EMPTY_MESH"
+
+
 def test_a_text_ply_of_equal_polygons_keeps_its_numbers_in_few_digits(tmp_path: Path) -> None:
     plyfile = pytest.importorskip("plyfile")
     positions, faces = cube(2)
@@ -365,6 +375,19 @@ def test_reading_a_header_takes_time_in_proportion_to_its_properties(form: str) 
 
     # A quadratic time would be 64 times as long, a proportional one 8 times, and more on a busy machine.
     assert seconds(40_000) < 28 * seconds(5_000)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("kind", ["float", "double"])
+def test_a_signaling_nan_is_a_place_like_others(tmp_path: Path, kind: str) -> None:
+    header = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+        + "".join(f"property {kind} {axis}\n" for axis in "xyz")
+        + "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    nan = {"float": b"\1\0\x80\x7f", "double": b"\1\0\0\0\0\0\xf0\x7f"}[kind]
+    (tmp_path / "a.ply").write_bytes(header.encode() + nan * 9 + struct.pack("<B3i", 3, 0, 1, 2))
+    assert np.isnan(read_mesh_file(tmp_path / "a.ply").mesh.positions).all()
 
 
 @pytest.mark.parametrize("order", ["<", ">"])

@@ -420,6 +420,16 @@ def test_parts_that_share_their_data_are_bounded(tmp_path: Path, monkeypatch: py
     assert caught.value.code == "MALFORMED_FILE"
 
 
+def test_what_a_shared_accessor_says_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gltf_document, "SHARED_BYTES", 1 << 20)
+    b = Builder()
+    position = b.add(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4"), extras="x" * 100_000)
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position}}]}] * 20
+    file = read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    with pytest.raises(InputError, match="share data"):
+        write_mesh_file(tmp_path / "out.glb", file, np.zeros((20, 3, 2)))
+
+
 def test_one_image_by_many_names_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gltf_document, "SHARED_BYTES", 1 << 20)
     b = scene()
