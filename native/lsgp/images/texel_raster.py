@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray
-from ..base.progress import Steps
+from ..base.progress import UNTOLD, Steps
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]
@@ -53,7 +53,7 @@ def edge_distances(corners: ComplexArray, places: ComplexArray) -> FloatArray:
     return turn[:, None] * cross(along, places[:, None] - corners) / np.abs(along)
 
 
-def covering_triangles(corners: ComplexArray, shape: Shape, steps: Steps) -> Indices:
+def covering_triangles(corners: ComplexArray, shape: Shape, steps: Steps = UNTOLD) -> Indices:
     """(height * width,), the first triangle that the center of each texel is in; -1: it is in none.
 
     corners: (m, 3); triangles that are not finite or have no area cover nothing. steps: told of.  Raises Cancelled.
