@@ -58,13 +58,13 @@ def _choose_output(args: argparse.Namespace) -> None:
 
 
 def _require_writable(path: Path) -> None:
+    require_writable_kind(path)
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise UsageError(f"'{path}' is a folder")
     is_device = target.exists() and not target.is_file()
     if not is_device and not target.parent.is_dir():  # devices of Windows are in no folder
         raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to")
-    require_writable_kind(target)
     if is_device and os.name == "nt":
         return  # Windows does not tell
     # A file is replaced through its folder; a device is written to.

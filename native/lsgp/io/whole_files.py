@@ -62,9 +62,8 @@ def write_all_whole(contents: Sequence[tuple[Path, bytes]]) -> None:
 
 def _writable(path: str | os.PathLike[str]) -> Path:
     """Where a path leads.  Raises OSError where nothing can be written."""
-    target = Path(os.path.realpath(path))
-    require_writable_kind(target)
-    return target
+    require_writable_kind(path)  # as a pipe has no other path than one that leads to it, /dev/stdout for one
+    return Path(os.path.realpath(path))
 
 
 def _write_new(path: Path, data: bytes) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import heapq
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,11 +110,13 @@ def _fewest_tiles(search: _Search, area: FloatArray, spread: _Spread) -> _Spread
 
 
 def _shared_out(area: FloatArray, tiles: int) -> Indices:
-    """(islands,), the tile of each: the largest island first, to the tile that has least."""
-    tile, filled = np.empty(len(area), np.int64), np.zeros(tiles)
+    """(islands,), the tile of each: the largest island first, to the tile that has least, of those without area to one
+    without islands. So none is empty.  tiles: no more than islands."""
+    tile = np.empty(len(area), np.int64)
+    filled = [(0.0, False, t) for t in range(tiles)]  # its area, and whether it has islands
     for i in np.argsort(-area, kind="stable").tolist():
-        tile[i] = filled.argmin()
-        filled[tile[i]] += area[i]
+        least, _, tile[i] = filled[0]
+        heapq.heapreplace(filled, (least + area[i], True, tile[i]))
     return tile
 
 

@@ -137,6 +137,17 @@ def test_pipes_by_name_are_refused_at_once(cube_files: Path, lsgp, use: str) -> 
 
 
 @needs_posix
+@pytest.mark.parametrize("use", ["output", "report"])
+def test_standard_output_that_is_a_pipe_is_refused_by_name_at_once(cube_files: Path, use: str) -> None:
+    if not os.path.exists("/dev/stdout"):
+        pytest.skip("no /dev/stdout here")
+    paths = {"output": ["-o", "/dev/stdout"], "report": ["-o", "out.obj", "--report", "/dev/stdout"]}
+    done = shell(cube_files, "", "unwrap", "cube.obj", *paths[use], "--cones", "corners.json", "--format", "obj")
+    assert (done.returncode, done.stdout, b"Not a regular file" in done.stderr) == (2, b"", True)
+    assert b"'/dev/stdout'" in done.stderr and not (cube_files / "out.obj").exists()
+
+
+@needs_posix
 def test_endless_devices_are_refused(cube_files: Path, lsgp) -> None:
     done = lsgp("unwrap", "/dev/zero", "-o", "out.obj", "--format", "obj")
     assert (done.code, "Not a regular file" in done.err) == (2, True)

@@ -178,3 +178,10 @@ def test_layouts_that_are_not_packed_have_no_tiles() -> None:
     ):
         with pytest.raises(lsgp.InputError, match=told):
             lsgp.auto_unwrap(cube, udim=2, **how)
+
+
+def test_tiles_may_be_filled_by_islands_without_area() -> None:
+    uv, island = rectangles([(2.0, 1.0), *[(1.0, 0.0)] * 4])
+    packed = lsgp.pack_islands(uv, island, 0.01, udim=5)
+    assert sum(map(len, in_tiles(packed, island).values())) == 5
+    assert np.isfinite(packed).all()
