@@ -12,6 +12,7 @@ from .base import arguments
 from .base.arguments import FloatArray
 from .base.equality import EqualByContent
 from .base.short_repr import ShortRepr
+from .base.unit_size import unit_exponent
 from .surface import Surface, require_vertices
 
 
@@ -36,8 +37,17 @@ def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray,
 
     corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
     """
+    largest, smallest, exponent = _scaled_singular_values(surface, corner_uv)
+    with np.errstate(over="ignore"):
+        return np.ldexp(largest, exponent), np.ldexp(smallest, exponent)
+
+
+def _scaled_singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray, FloatArray, int]:
+    """The same with coordinates of about 1, and the power of two by which they were larger."""
     require_vertices(surface)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
+    exponent = unit_exponent(uv)
+    uv = np.ldexp(uv, -exponent)
     length, dot, doubled = _first_sides(surface)
     with np.errstate(divide="ignore", invalid="ignore"):
         # The triangle in its own plane: corners 0, length, x + i height.
@@ -51,16 +61,16 @@ def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray,
     smallest[largest == 0] = 0.0
     flat = ~(doubled > 0)
     largest[flat] = smallest[flat] = np.nan
-    return largest, smallest
+    return largest, smallest, exponent
 
 
 def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDistortion:
     """The measures of each triangle.  Arguments and errors as in `singular_values`."""
-    largest, smallest = singular_values(surface, corner_uv)
+    largest, smallest, _ = _scaled_singular_values(surface, corner_uv)
     measured = ~np.isnan(largest)
     areas = np.where(measured, triangle_areas(surface), 0.0)
     scaled = largest * smallest
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         # Texture area per unit of surface area, over the whole map.
         unit = (scaled[measured] * areas[measured]).sum() / areas.sum()
         stretch = np.sqrt((1 / largest**2 + 1 / smallest**2) / 2 * unit)

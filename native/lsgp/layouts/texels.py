@@ -102,8 +102,10 @@ def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size:
     # Areas of coordinates of any size can be computed in a unit of theirs.
     extent = float(np.abs(uv).max(initial=0.0, where=np.isfinite(uv))) or 1.0
     largest, smallest = singular_values(surface, uv / extent)
+    in_units = np.sqrt(largest) * np.sqrt(smallest)
+    # What has no area has no texels, however large the unit is.
     with np.errstate(over="ignore"):
-        return np.sqrt(largest) * np.sqrt(smallest) * (_side(texture_size) * (extent / unit))
+        return np.multiply(in_units, _side(texture_size) * (extent / unit), out=in_units, where=in_units != 0)
 
 
 def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> TexelDensity:

@@ -76,6 +76,12 @@ def test_density_grows_with_the_layout_at_any_size(split: lsgp.Result, scale: fl
         assert getattr(other, name) == pytest.approx(getattr(one, name) * scale, rel=1e-9)
 
 
+def test_what_has_no_area_in_a_huge_layout_has_no_texels() -> None:
+    grid = surface(meshes.grid(5, 4))
+    uv = np.full((len(grid.triangles), 3, 2), np.finfo(float).max)
+    assert (lsgp.triangle_texel_density(grid, uv, SIZE) == 0).all()
+
+
 def test_a_flat_map_of_one_scale_has_one_density() -> None:
     grid = surface(meshes.grid(5, 4))
     uv = 0.25 * grid.positions[grid.triangles][..., :2]

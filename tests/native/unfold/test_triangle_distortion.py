@@ -54,6 +54,16 @@ def test_a_map_that_only_turns_mirrors_and_scales_has_no_distortion():
             assert measure == pytest.approx(np.ones(len(mesh.triangles)), rel=1e-12)
 
 
+@pytest.mark.parametrize("exponent", [-900, 600, 1000])
+def test_measures_do_not_depend_on_the_unit_of_the_coordinates(exponent: int) -> None:
+    mesh = meshes.grid()
+    uv = mesh.positions[mesh.triangles][..., :2] @ np.array([[2.0, 0.5], [0.0, 1.0]])
+    scaled = np.ldexp(uv, exponent)
+    assert lsgp.triangle_distortion(surface(mesh), scaled) == lsgp.triangle_distortion(surface(mesh), uv)
+    for own, plain in zip(*(lsgp.singular_values(surface(mesh), of) for of in (scaled, uv)), strict=True):
+        np.testing.assert_array_equal(own, np.ldexp(plain, exponent))
+
+
 def test_triangles_without_an_area_or_coordinates_are_left_out():
     mesh = meshes.with_zero_area(meshes.grid(2, 2), 3)
     place = mesh.positions[mesh.triangles]
