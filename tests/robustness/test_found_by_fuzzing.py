@@ -242,6 +242,19 @@ def test_a_motion_repeated_any_number_of_times(times: int) -> None:
     assert quarter.power(times) == quarter.power(times % 4)
 
 
+@pytest.mark.parametrize("density", [1e20, 1e160, 1e300, 1e304, 1e308])
+def test_a_texel_density_beyond_all_tiles(density: float) -> None:
+    """Texels of an island, which are more than its coordinates, may be more than numbers can hold."""
+    box = surface(meshes.cube(2))
+    result = lsgp.auto_unwrap(box, pack="shelves")
+    with pytest.raises(lsgp.InputError, match=r"larger than a tile|more than numbers can hold") as caught:
+        lsgp.at_texel_density(box, result, lsgp.TexelLayout(density, 1024, 4))
+    assert len(caught.value.message) < 300
+    if "Lower the texel density to" in caught.value.message:
+        told = float(caught.value.message.split("texel density to ")[1].split(",")[0])
+        assert lsgp.at_texel_density(box, result, lsgp.TexelLayout(told, 1024, 100)).solved.all()
+
+
 def test_a_texel_layout_is_refused_before_the_map(monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of tiles, and that of a seamless layout, are known before anything is unwrapped."""
     monkeypatch.setattr(lsgp.Solver, "parameterize", lambda *_, **__: pytest.fail("unwrapped"))

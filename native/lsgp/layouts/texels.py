@@ -147,7 +147,8 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     with np.errstate(over="ignore", invalid="ignore"):
         mean = texel_density(surface, result.corner_uv, layout.texture_size).mean
         uv = result.corner_uv * np.divide(layout.density, mean)
-    if not np.isfinite(uv[result.solved]).all():
+        extent = 2 * np.abs(uv[result.solved]).max(initial=0.0) * layout.texture_size  # at most
+    if not np.isfinite(extent):
         arguments.refuse("density", layout.density, "pass fewer texels per unit, which is more than numbers can hold")
     if layout.udim is None:
         return replace(result, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)])
@@ -201,12 +202,12 @@ def _tile_places(boxes: FloatArray, island: IndexArray, layout: TexelLayout) -> 
     sizes = boxes[:, 2:] - boxes[:, :2] + 2 * free
     large = np.flatnonzero((sizes > 1 + _ROUNDING).any(axis=1))
     if len(large):
-        width, height = sizes[large[np.argmax(sizes[large].max(axis=1))]] * texture_size
-        most = layout.density * (texture_size - 2 * margin) / (max(width, height) - 2 * margin)
+        width, height = (sizes[large[np.argmax(sizes[large].max(axis=1))]] * texture_size).tolist()
+        most = layout.density * ((texture_size - 2 * margin) / (max(width, height) - 2 * margin))
         raise InputError(
             "ISLAND_TOO_LARGE",
-            f"{_of_islands(len(large), len(boxes))} larger than a tile: the largest is {width:.0f} x {height:.0f} "
-            f"texels with its margin, a tile {texture_size} x {texture_size}. Lower the texel density to "
+            f"{_of_islands(len(large), len(boxes))} larger than a tile: the largest is {_texels(width)} x "
+            f"{_texels(height)} texels with its margin, a tile {texture_size} x {texture_size}. Lower the texel density to "
             f"{_rounded_down(most)}, take a larger texture, or cut it by seams.",
             _triangles_of(large, island),
         )
@@ -279,6 +280,11 @@ def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
 
 def _of_islands(count: int, total: int) -> str:
     return f"{count} of {total} islands {'is' if count == 1 else 'are'}"
+
+
+def _texels(count: float) -> str:
+    """All digits that matter."""
+    return f"{count:.0f}" if count < 1e9 else f"{count:.3g}"
 
 
 def _rounded_down(value: float) -> str:
