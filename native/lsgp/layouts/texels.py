@@ -207,8 +207,8 @@ def _tile_places(boxes: FloatArray, island: IndexArray, layout: TexelLayout) -> 
         raise InputError(
             "ISLAND_TOO_LARGE",
             f"{_of_islands(len(large), len(boxes))} larger than a tile: the largest is {_texels(width)} x "
-            f"{_texels(height)} texels with its margin, a tile {texture_size} x {texture_size}. Lower the texel density to "
-            f"{_rounded_down(most)}, take a larger texture, or cut it by seams.",
+            f"{_texels(height)} texels with its margin, a tile {texture_size} x {texture_size}. Lower the texel "
+            f"density to {_rounded_down(most)}, take a larger texture, or cut it by seams.",
             _triangles_of(large, island),
         )
     places, tile_of = _rows_in_tiles(sizes)
