@@ -29,6 +29,7 @@ constexpr double most_dead_ends = 0.1;       // of the vertices at creases: thos
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
+constexpr double same_share = 1e-9;          // of it, relatively: what differs by less is rounding
 constexpr double widest_corner = 2 * M_PI / 3;  // radians, at the ends of a whole side
 constexpr double is_no_hole = 0.35;             // radians between a border's turning and that of a hole in the plane
 constexpr Index borders_of_frame = 3;           // a tube has two
@@ -129,8 +130,7 @@ class Patches {
   // that makes fewer islands also apart at notches.
   PerHalfedge<char> unfold_together() const {
     Array<SharedBorder> borders = trace();
-    std::stable_sort(borders.begin(), borders.end(),
-                     [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
+    sort_by_share(borders);
     const PerHalfedge<char> nowhere(mesh_.halfedge_count(), 0);
     Unfolded together = unfold(borders, nowhere), apart = unfold(borders, find_notches());
     return std::move(apart.joined > together.joined ? apart.open : together.open);
@@ -141,6 +141,21 @@ class Patches {
     PerHalfedge<char> open;
     Index joined;  // by how many there are fewer islands, about, once none lies over itself around a vertex
   };
+
+  // The largest first; those that differ by rounding, as on regular outlines, as they are.
+  void sort_by_share(Array<SharedBorder>& borders) const {
+    Array<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < borders.size(); ++i) order.emplace_back(-share(borders[i]), i);
+    std::sort(order.begin(), order.end());
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+      while (end < order.size() && order[end].first <= (1 - same_share) * order[begin].first) ++end;
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
+                [](const auto& a, const auto& b) { return a.second < b.second; });
+    }
+    Array<SharedBorder> sorted;
+    for (const auto& [share, i] : order) sorted.push_back(std::move(borders[i]));
+    borders = std::move(sorted);
+  }
 
   // Of the smaller patch's perimeter.
   double share(const SharedBorder& border) const {

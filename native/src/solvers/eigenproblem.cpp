@@ -21,6 +21,8 @@ using ComplexSparse = Eigen::SparseMatrix<Complex>;
 // The eigenvalues of a conformal form relative to its Dirichlet form lie between 0 and 1; a shift of 1e-12 does not
 // change the eigenvector, and makes the form of a surface that unfolds exactly definite.
 constexpr double shift = 1e-12;
+// That of large surfaces is definite only up to rounding, which grows with their size, and takes more.
+constexpr double largest_shift = 1e-8, next_shift = 100;
 constexpr double tolerance = 1e-13;
 constexpr int krylov_dimension = 24;
 constexpr int most_restarts = 400;
@@ -39,12 +41,24 @@ void to_real(const Eigen::VectorXcd& z, double* y) {
   Eigen::Map<Eigen::VectorXd>(y + z.size(), z.size()) = z.imag();
 }
 
+template <typename Factor, typename Matrix>
+Factor factor_shifted(const Matrix& form, const Matrix& norm) {
+  for (double share = shift;; share *= next_shift) {
+    try {
+      return Factor(form + share * norm);
+    } catch (const SolverFailure& failure) {
+      if (failure.cause != SolverFailure::Cause::not_positive_definite || share >= largest_shift) throw;
+    }
+  }
+}
+
 template <typename Factor>
 class ShiftedInverse {
  public:
   using Scalar = double;
   template <typename Matrix>
-  ShiftedInverse(const Matrix& form, const Matrix& norm) : size_(form.rows()), factor_(regularized(form, norm)) {}
+  ShiftedInverse(const Matrix& form, const Matrix& norm)
+      : size_(form.rows()), factor_(factor_shifted<Factor>(form, norm)) {}
   Eigen::Index rows() const { return 2 * size_; }
   Eigen::Index cols() const { return 2 * size_; }
   void set_shift(double) {}  // fixed when the factor was made
@@ -122,8 +136,9 @@ Eigen::VectorXcd find_smallest(const Matrix& form, const Matrix& norm) {
 
 }  // namespace
 
-ComplexSparse regularized(const ComplexSparse& form, const ComplexSparse& norm) { return form + shift * norm; }
-Eigen::MatrixXcd regularized(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm) { return form + shift * norm; }
+Cholesky<Complex> factor_regularized(const ComplexSparse& form, const ComplexSparse& norm) {
+  return factor_shifted<Cholesky<Complex>>(form, norm);
+}
 
 Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm) {
   return find_smallest<Cholesky<Complex>>(form, norm);

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <complex>
 
+#include "solvers/cholesky.hpp"
+
 namespace lsgp {
 
 // The eigenvector of  form x = lambda norm x  with the smallest lambda.
@@ -14,9 +16,9 @@ Eigen::VectorXcd smallest_eigenvector(const Eigen::SparseMatrix<std::complex<dou
                                       const Eigen::SparseMatrix<std::complex<double>>& norm);
 Eigen::VectorXcd smallest_eigenvector(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm);
 
-// form + share * norm, share just large enough to factor a form that is singular because its map is exact.
-Eigen::SparseMatrix<std::complex<double>> regularized(const Eigen::SparseMatrix<std::complex<double>>& form,
-                                                      const Eigen::SparseMatrix<std::complex<double>>& norm);
-Eigen::MatrixXcd regularized(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm);
+// The factor of form + share * norm, share just large enough for a form that is singular because its map is exact.
+// Throws SolverFailure where none is.
+Cholesky<std::complex<double>> factor_regularized(const Eigen::SparseMatrix<std::complex<double>>& form,
+                                                  const Eigen::SparseMatrix<std::complex<double>>& norm);
 
 }  // namespace lsgp

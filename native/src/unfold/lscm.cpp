@@ -37,8 +37,7 @@ Eigen::VectorXcd unfold_lscm(const MetricMesh& surface, const CutMesh& cut_mesh)
   // With one pin at the origin, a load at the other gives the map with both pinned, up to scale and rotation.
   Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(reduction.unknown_count);
   pull[reduction.terms[reduction.begin[second]].unknown] = 1;
-  const Cholesky<Complex> factor(regularized(conformal, dirichlet));
-  return expand(reduction, factor.solve(pull));
+  return expand(reduction, factor_regularized(conformal, dirichlet).solve(pull));
 }
 
 }  // namespace lsgp

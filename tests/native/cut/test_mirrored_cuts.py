@@ -255,11 +255,15 @@ def test_cuts_of_split_islands_with_handles_are_alike_on_both_sides_or_named() -
 
 
 @pytest.mark.parametrize(
-    ("mesh", "count"),
-    [(meshes.two_horned(3), 12), (meshes.two_horned(3, 0.4), 28), (meshes.ellipsoid(2, (1, 1, 3)), 16)],
+    ("mesh", "count", "fuller"),
+    [
+        (meshes.two_horned(3), 12, 2.0),
+        (meshes.two_horned(3, 0.4), 28, 2.0),
+        (meshes.ellipsoid(2, (1, 1.4, 3)), 16, 1.1),
+    ],
     ids=["horned", "turned", "ellipsoid"],
 )
-def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh, count: int) -> None:
+def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh, count: int, fuller: float) -> None:
     middle = (mesh.positions[:, 0].min() + mesh.positions[:, 0].max()) / 2
     placed = lsgp.place_cones(surface(mesh), symmetric=True, count=count)
 
@@ -273,8 +277,8 @@ def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh,
         return result, float(oracle.signed_areas(result.corner_uv).sum() / max(sides) ** 2)
 
     (whole, filled_whole), (cut, filled_cut) = unwrapped("off"), unwrapped("full")
-    assert whole.island.max() == 0 and filled_whole < 0.45
-    assert filled_cut > 1.5 * filled_whole
+    assert whole.island.max() == 0 < cut.island.max()
+    assert filled_cut > fuller * filled_whole
     assert mirrored_share(mesh, cut.cut_edges, middle) >= 0.98
     assert oracle.metric_gap(whole.corner_uv, cut.corner_uv) <= 1e-9
 

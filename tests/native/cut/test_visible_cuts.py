@@ -73,7 +73,7 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
     ("family", "preset", "share", "most"),
     [
         ("heads", "paint", 0.68, 2.2),
-        ("heads", "bake", 0.68, 2.6),
+        ("heads", "bake", 0.78, 3.6),
         ("beasts", "paint", 0.83, 3.8),
         ("beasts", "bake", 0.83, 4.6),
         ("tubes", "paint", 0.81, 4.2),

@@ -154,7 +154,9 @@ def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None
     assert lsgp.auto_unwrap(given) == lsgp.auto_unwrap(given, symmetric=False)
 
 
-def test_a_symmetric_map_replaces_another_only_at_a_small_cost() -> None:
+def test_a_symmetric_map_replaces_another_only_at_a_small_cost(monkeypatch: pytest.MonkeyPatch) -> None:
+    # How far a packer fills a square with a triangle cut off has no part in it.
+    monkeypatch.setattr(map_comparison, "packer_name", lambda: None)
     usual = lsgp.auto_unwrap(surface(meshes.merge([meshes.two_horned(1)] * 10)), count=4, preset="bake", pack="shelves")
     islands = int(usual.island.max()) + 1
     assert islands >= 10

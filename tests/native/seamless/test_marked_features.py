@@ -136,7 +136,7 @@ def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: f
     assert undeclared_faults(wheel, result, PLAIN) == []
 
 
-@pytest.mark.parametrize("teeth, depth", [(7, 0.4), *many_solves((9, 0.3))])
+@pytest.mark.parametrize("teeth, depth", [(7, 0.4), *many_solves((9, 0.4))])
 def test_parts_end_at_creases_where_marked_features_gain_by_that(teeth: int, depth: float) -> None:
     mesh = closed.toothed_wheel(teeth, depth)
     edges = lsgp.feature_edges(surface(mesh), angle=0.7)

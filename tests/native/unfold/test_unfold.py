@@ -247,6 +247,15 @@ def test_lscm_is_the_least_squares_conformal_map_of_the_same_cuts(name: str) -> 
     assert np.abs(oracle.as_uv(solved) - result.corner_uv).max() <= 1e-7
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_rounding_does_not_decide_whether_lscm_unfolds_a_large_surface_exactly(seed: int) -> None:
+    """Its system is singular but for rounding, which grows with the surface."""
+    mesh = meshes.cube(58)
+    units = np.random.default_rng(seed).integers(-1, 2, mesh.positions.shape)
+    found = unwrap(mesh._replace(positions=mesh.positions + units * np.spacing(np.abs(mesh.positions))), method="lscm")
+    assert found.distortion.l2_stretch == pytest.approx(1, abs=1e-6)
+
+
 def test_lscm_leaves_sisters_of_different_length() -> None:
     """What the transitions are for: without them the two sides of a cut do not fit."""
     mesh = meshes.bumpy_sphere(2)
