@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ear_clipping.hpp"
 
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -353,9 +357,8 @@ void define_ear_clipping(py::module_& module) {
   using py::literals::operator""_a;
   module.def(
       "clip_ears",
-      [](const Numbers& polygons, const py::object& is_taken) {
-        if (is_taken.is_none()) return clip_ears(polygons, nullptr);
-        return clip_ears(polygons, [&](Corner p, Corner q) { return is_taken(p, q).cast<bool>(); });
+      [](const Numbers& polygons, const std::optional<IsTaken>& is_taken) {
+        return clip_ears(polygons, is_taken.value_or(nullptr));
       },
       "polygons"_a, "is_taken"_a);
 }
