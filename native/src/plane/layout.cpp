@@ -104,6 +104,7 @@ Array<Similarity> arrange(const Array<Island>& islands) {
 }
 
 void arrange_on_lattice(const Array<DividedLayout>& layouts, const PointLattice& lattice, int step) {
+  constexpr double rounding = 1e-6;  // cells, within which places are put onto the lattice
   // Rows of the lattice that have points straight above each other.
   const double width = step, height = step * (lattice.square() ? 1 : 2 * lattice.generator().imag());
   struct Span {
@@ -115,7 +116,8 @@ void arrange_on_lattice(const Array<DividedLayout>& layouts, const PointLattice&
     spans.resize(first + layout.part_count);
     for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
       const Complex z = (*layout.position)[i];
-      const double column = std::floor(z.real() / width), row = std::floor(z.imag() / height);
+      // What lies on a line of the lattice but for rounding belongs to the cell beyond it, whatever the last digits.
+      const double column = std::floor((z.real() + rounding) / width), row = std::floor((z.imag() + rounding) / height);
       Span& span = spans[first + layout.part[i]];
       span = {std::min(span.left, column), std::max(span.right, column + 1), std::min(span.bottom, row),
               std::max(span.top, row + 1)};
