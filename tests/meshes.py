@@ -285,6 +285,13 @@ def voxels(filled: NDArray[np.bool_]) -> Mesh:
     return make(np.array(list(ids), np.float64), triangles)
 
 
+def perforated_slab(k: int) -> Mesh:
+    """Genus k * k: a square slab of cells with k * k holes through it."""
+    filled = np.ones((2 * k + 1, 2 * k + 1, 1), bool)
+    filled[1::2, 1::2] = False
+    return voxels(filled)
+
+
 def double_torus() -> Mesh:
     """Genus 2: a slab of cells with two holes through it."""
     filled = np.ones((5, 3, 1), bool)

@@ -15,7 +15,7 @@ from ..api import Solver, crease_borders
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
-from ..errors import InputError
+from ..errors import InputError, SolverError
 from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
 from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, with_tiny_findings
 from ..options import Options, Seamless
@@ -267,11 +267,19 @@ def best_at_creases(
     """The surface with the best borders among the possible ones, its cones and its map.
 
     Other borders are tried on components that are stretched without them, and then on others that leave much of the
-    square empty.
+    square empty; and all of them where no map is found without.
     make: the cones and the map of a surface, as of `possible_cones` and `best_map`. progress, errors: of `make`.
     """
     surface, is_possible = choices.surface, choices.possible is not None
-    best = surface, *make(surface, share_of(progress, 0.0, _TRYING if is_possible else 1.0))
+    trying = share_of(progress, 0.0, _TRYING if is_possible else 1.0)
+    try:
+        best = surface, *make(surface, trying)
+    except SolverError as error:
+        if error.code != "SOLVER_FAILED" or choices.possible is None:
+            raise
+        # Ending at creases it takes fewer cones, or none.
+        opened = _ending_at(surface, choices.possible)
+        return opened, *make(opened, share_of(progress, _TRYING, 1.0))
     if is_possible:
         components = Components.of(surface)
         possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/conditions.hpp"
 #include "base/least_first.hpp"
 #include "base/union_find.hpp"
 #include "creases/bevels.hpp"
@@ -22,6 +23,7 @@ namespace lsgp {
 namespace {
 
 constexpr double least_patch = 0.0002;       // of the area: smaller ones are no islands
+constexpr double quarter_turns = 4;          // of the curvature of closed surfaces, by Euler characteristic
 constexpr double least_beside_apexes = 0.5;  // of the curvature, where the others carry the rest
 constexpr double most_apexes = 2;            // few enough to be cones
 constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
@@ -56,10 +58,13 @@ PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<cha
   UnionFind joined(count);
   PerPart<Index> home(count);  // the patch that stands for a merged set
   for (Index p = 0; p < count; ++p) home[p] = p;
+  // Where Gauss-Bonnet asks for more cones than can be placed, everything has to end at creases.
+  const bool takes_cones = !mesh.closed() || quarter_turns * std::abs(mesh.euler) <= most_conditions;
+  const double least_area = takes_cones ? least_patch * geometry.total_area : 0;
   using Entry = std::pair<double, Index>;
   LeastFirst<Entry> smallest;
   for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
-  while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area) {
+  while (!smallest.empty() && smallest.top().first < least_area) {
     checkpoint(operations_an_entry);
     const auto [size, p] = smallest.top();
     smallest.pop();

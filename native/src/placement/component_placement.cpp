@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/conditions.hpp"
 #include "base/text.hpp"
 #include "cut/cut_graph.hpp"
 #include "placement/verified_placement.hpp"
@@ -132,6 +133,9 @@ Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
                             ProgressMonitor& monitor) {
   ConeChooser chooser(task, options, usual_sites, monitor);
+  if (!options.count) {
+    require_few_conditions(chooser.required_count(), "The curvature of this component takes about", "cones");
+  }
   const ProgressMonitor::Interval interval(monitor, 0.3, 1);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();

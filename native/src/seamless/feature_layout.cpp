@@ -32,6 +32,10 @@ constexpr double whole = 1e-5;                    // deviation of a dependent co
 constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
 constexpr std::ptrdiff_t many_coordinates = 512;  // for which only one scale is tried
 
+// Multiplications in choosing values for one map: some ten seconds. A hundred coordinates take a hundredth of that.
+// It is also the limit for the cube of their number, by which the work of finding what depends on what grows.
+constexpr double most_work = 1e10;
+
 CoordinateForm coordinate(Index of) { return {{of / 2, of % 2 == 0 ? Complex(0, 1) : Complex(1)}}; }
 
 CoordinateForm difference(Index of, Index from) {
@@ -58,7 +62,8 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const FeatureAlignment& al
       aligned_(alignment.lines),
       aligned_length_(total_length(aligned_)),
       coarse_step_(coarse_step),
-      start_(alignment.start) {
+      start_(alignment.start),
+      left_(most_work) {
   find_coordinates();
   is_large_ = has_many_coordinates();
 }
@@ -86,6 +91,7 @@ void FeatureLayout::find_loosened() {
 }
 
 bool FeatureLayout::loosen() {
+  if (left_ <= 0) return false;
   const Array<FeatureLine> before = aligned_;
   find_loosened();
   do {
@@ -274,6 +280,8 @@ void FeatureLayout::find_coordinates() {
   line_count_ = ssize(rounded_);
   // Shifts round others, to which corners would have to be related.
   if (!may_shift_) find_corners(is_on_line);
+  if (std::pow(static_cast<double>(ssize(rounded_)), 3) > most_work) left_ = 0;
+  if (left_ <= 0) return;
   const Reduction& reduction = task_.reduction;
   DirectedEdges fixed = edges;
   fixed.fixed = held_translation_;
@@ -311,7 +319,8 @@ std::optional<WholeValues> FeatureLayout::find_values(double step) const {
 double FeatureLayout::step_of(Rounding rounding) const { return rounding == Rounding::fine ? fine_step : coarse_step_; }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
-std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding, double too_much) const {
+std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding, double too_much) {
+  if (left_ <= 0) return std::nullopt;
   const bool is_fine = rounding == Rounding::fine;
   const std::optional<WholeValues>& all = is_fine ? fine_values_ : coarse_values_;
   if (!all) return std::nullopt;
@@ -342,7 +351,9 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
   for (const Stage stage : {Stage::vanishing, Stage::on_lattice, Stage::all}) {
     const std::ptrdiff_t end = is_fine && stage != Stage::all ? lattice_count_ : count;
     for (;;) {
-      checkpoint(static_cast<double>(count * (ssize(out.independent) + 1)));
+      const auto operations = static_cast<double>(ssize(rounded_) * (ssize(out.independent) + 1));
+      left_ -= operations;
+      checkpoint(operations);
       std::ptrdiff_t best = -1;
       double cheapest = std::numeric_limits<double>::infinity();
       for (std::ptrdiff_t i = 0; i < count; ++i) {
@@ -412,6 +423,7 @@ void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& chole
 
 std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_coarse, bool keeps_corners,
                                                         const std::function<bool(const Eigen::VectorXcd&)>& accepts) {
+  if (left_ <= 0) return std::nullopt;
   const std::optional<Choice> coarse_lines = choose(density, keeps_corners ? Rounding::with_corners : Rounding::coarse);
   const auto is_of_corner = [&](Index i) { return i >= line_count_; };
   if (keeps_corners && coarse_lines &&
@@ -441,7 +453,7 @@ bool FeatureLayout::has_many_coordinates() const {
 }
 
 // The cheapest one of some scales about this one.
-std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, Rounding rounding) const {
+std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, Rounding rounding) {
   const int scales = has_many_coordinates() ? 0 : tried_scales;
   const auto growth_at = [](int k) { return k * M_LN2 / 16; };
   const auto cost_of_growth = [&](int k) {

@@ -33,7 +33,7 @@ class FeatureLayout {
 
   // Releases features after no lattice that was tried has admitted all. Of two ways, whichever keeps more of their
   // length comes next: edges at the defects of the layout with the fewest are released, or the most expensive sixth of
-  // the lines. False if none would be left.
+  // the lines. False if none would be left, or after all the work that choosing values may take.
   bool loosen();
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
@@ -75,11 +75,11 @@ class FeatureLayout {
   void find_corners(const Array<char>& is_on_line);
   std::optional<WholeValues> find_values(double step) const;
   double step_of(Rounding rounding) const;
-  // None where rounding lines costs `too_much` or more.
-  std::optional<Choice> round(double scale, Rounding rounding, double too_much) const;
+  // None where rounding lines costs `too_much` or more, or after all the work that it may take.
+  std::optional<Choice> round(double scale, Rounding rounding, double too_much);
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
   bool has_many_coordinates() const;
-  std::optional<Choice> choose(double density, Rounding rounding) const;
+  std::optional<Choice> choose(double density, Rounding rounding);
   std::optional<Eigen::VectorXcd> lay_out(const Choice& choice);
   void snap(double step, Eigen::VectorXcd& position) const;
   bool is_on_lattice(const Eigen::VectorXcd& position) const;
@@ -97,6 +97,7 @@ class FeatureLayout {
   // their ends and corners.
   Array<CoordinateForm> rounded_;
   std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, distance_count_ = 0, line_count_ = 0;  // ends of the first ones
+  double left_;  // multiplications that choosing values may still take
   bool may_shift_ = false, is_large_ = false, are_fine_values_known_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
   struct Loosened {

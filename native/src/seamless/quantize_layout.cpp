@@ -8,7 +8,9 @@
 #include <numeric>
 #include <utility>
 
+#include "base/conditions.hpp"
 #include "base/memory.hpp"
+#include "base/text.hpp"
 #include "creases/features.hpp"
 #include "plane/layout.hpp"
 #include "plane/predicates.hpp"
@@ -26,6 +28,10 @@ namespace {
 // Number of simultaneous matrices over the lattice's unknowns: the lattice energy, its restriction, reduced bases and
 // moves.
 constexpr double lattice_blocks = 8;
+// Products of coefficients in a form over a layout's unknowns, one for each edge and each pair of unknowns that its
+// ends depend on, and the bytes that Newton's method takes for each, measured: 1 GB. A sheet with fifty holes through
+// it, all of whose vertices are cones, has some 1.4 million.
+constexpr double most_products = 2 << 20, bytes_of_product = 512;
 // Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
 constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
@@ -72,6 +78,25 @@ Array<Side> most_parallel(const Array<Side>& sides, double tolerance) {
   return {best, end_of_best};
 }
 
+// Throws SOLVER_FAILED if those of a form over these unknowns are too many.
+void require_few_products(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction) {
+  const auto terms = [&](Index corner) {
+    const Index copy = cut_mesh.copy_of_corner[corner];
+    return static_cast<double>(reduction.begin[copy + 1] - reduction.begin[copy]);
+  };
+  double products = 0;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (is_open(mesh, cut_mesh, h) || h < mesh.twin[h]) products += terms(h) * terms(next(h));
+  }
+  if (products <= most_products) return;
+  constexpr double mega = 1e6, giga = 1e9;
+  throw Error(Code::solver_failed,
+              concat("Rounding the layout of this component would take ", rounded(products / mega, 2),
+                     " million products of coefficients and ", rounded(bytes_of_product * products / giga, 2),
+                     " GB of memory; the limit is ", rounded(most_products / mega, 2),
+                     " million. Use fewer cones, or cut it into components with fewer handles along seams."));
+}
+
 bool is_below_root(const NodeGraph& nodes, Index vertex) {
   return vertex != none && nodes.vertex[nodes.order.front()] != vertex;
 }
@@ -102,6 +127,8 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
       before_step_(std::move(before_step)),
       rotation_(*map.get().rotation) {
   const Array<Index>& relaxed = demands.relaxed;
+  require_few_conditions(static_cast<double>(cones_.size()) + 2.0 * mesh_.genus,
+                         "A layout of this component on a lattice has", "lattice points");
   // With relaxed cones the root leaves the lattice, too: preferably one of a pair that is too close.
   const NodeGraph nodes = build_node_graph(mesh_, cut_graph_, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(curvature_.at_vertex[v]);
@@ -112,6 +139,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   if (has_many_terms() && relaxed.empty() && is_below_root(nodes, reduction_.origin)) {
     local_ = reduce_locally(surface(), nodes, node_curvature, units_of(lattice_, turns), reduction_.origin);
   }
+  require_few_products(mesh_, cut_mesh_, moving_reduction());
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
   if (relaxed.empty() && lattice_.square()) align_features();
@@ -131,6 +159,7 @@ void LayoutQuantizer::prepare_search() {
   if (const CutFactor* factor = system_.stiff_factor(cones_, cut_graph_)) {
     lattice_energy_ = lattice_energy_on_cut(mesh_, cut_mesh_, *factor, reduction_);
   } else {
+    require_few_products(mesh_, cut_mesh_, reduction_.reduction);
     const Geometry stiffened = stiffen_around({mesh_, geometry_}, cones_);
     lattice_energy_ = sparse_lattice_energy({{mesh_, stiffened}, cut_graph_, cut_mesh_}, reduction_);
   }

@@ -15,7 +15,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double hopeless_l2 = 1.1;  // the variance does not see stretch beyond this well
+constexpr double usual_turn = M_PI / 2;  // of a cone where Gauss-Bonnet asks for many
+constexpr double hopeless_l2 = 1.1;      // the variance does not see stretch beyond this well
 constexpr int most_relocations = 3;
 constexpr double trusted_reach = 1.15;
 constexpr double low_l2 = 1.01;             // an L2 stretch that stronger cones need not lower
@@ -52,6 +53,10 @@ void ConeChooser::forget_prices() {
 }
 
 int ConeChooser::existing_count() const { return static_cast<int>(vertices_of(existing_sites()).size()); }
+
+double ConeChooser::required_count() const {
+  return problem_.balanced ? std::abs(problem_.required_sum) / usual_turn : 0;
+}
 
 Index ConeChooser::place_count() const {
   Index out = 0;

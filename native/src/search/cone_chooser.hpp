@@ -77,6 +77,8 @@ class ConeChooser {
   Index place_count() const;  // single cones at all sites
   bool reaches_all() const { return sites_.reaches_all; }
   int existing_count() const;  // cones, with those that mirror them
+  // Of a quarter turn each, as many as Gauss-Bonnet asks for.
+  double required_count() const;
 
   // The set of the least predicted stretch among those after each sweep of exchange.
   ConeSet exchanged(ConeSet set) const;

@@ -9,8 +9,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double stage_growth = 1.25;    // beyond the stages
-constexpr double usual_turn = M_PI / 2;  // of a cone where Gauss-Bonnet asks for many
+constexpr double stage_growth = 1.25;  // beyond the stages
 constexpr std::size_t usual_reaches = 2;
 constexpr double poor_l2 = 1.15;  // L2 stretch above which stronger cones are tried
 
@@ -72,9 +71,7 @@ void ConeGrowth::advance_in_batches(double target) {
 
 // Every surface may use all stages; more only if the curvature that Gauss-Bonnet requires has more quarter turns.
 int ConeGrowth::most_automatic() const {
-  const PlacementProblem& problem = chooser_.problem();
-  const double turns = problem.balanced ? std::abs(problem.required_sum) / usual_turn : 0;
-  return std::max(*std::rbegin(cone_stages), static_cast<int>(std::ceil(turns)));
+  return std::max(*std::rbegin(cone_stages), static_cast<int>(std::ceil(chooser_.required_count())));
 }
 
 // Among impossible choices, the one with more cones is nearer to a map.

@@ -2,6 +2,7 @@
 #include "split/overlap_splitter.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -13,6 +14,9 @@ namespace lsgp {
 namespace {
 
 constexpr double operations_an_entry = 500;
+// Among which a cut is searched beyond the budget; a few times those of the regions of such layouts.
+constexpr std::size_t faces_nearby = 1024;
+constexpr char inside = 1, rim = 2;  // marks of those
 
 }  // namespace
 
@@ -157,6 +161,46 @@ void OverlapSplitter::divide(Index part, const Array<char>& is_first, Array<Part
   }
 }
 
+// Which of a part's faces are on the first side of the best cut between the two sides of a region.
+Array<char> OverlapSplitter::cut(const Array<Index>& faces, const Region& region) {
+  searched_ += static_cast<double>(faces.size());
+  if (searched_ > most_searches * graph_.face_count()) return cut_nearby(faces, region);
+  return cutter_.cut(faces, region.first, region.second).is_first;
+}
+
+// The same among the faces nearest to the first side, whose outermost ones stay on the second side.
+Array<char> OverlapSplitter::cut_nearby(const Array<Index>& faces, const Region& region) {
+  const Index part = parts_.of_face[region.first.front()];
+  Array<Index> scope = region.first, second;
+  sort_unique(scope);
+  for (const Index face : scope) side_[face] = inside;
+  std::size_t ring = 0;
+  while (ring < scope.size() && (ring == 0 || scope.size() < faces_nearby)) {
+    const std::size_t end = scope.size();
+    for (; ring < end; ++ring) {
+      graph_.for_each_link(scope[ring], [&](Index other, const FaceGraph::Link&) {
+        if (parts_.of_face[other] != part || side_[other] != 0) return;
+        side_[other] = inside;
+        scope.push_back(other);
+      });
+    }
+  }
+  for (std::size_t i = ring; i < scope.size(); ++i) side_[scope[i]] = rim;
+  for (const Index face : region.second) {
+    if (side_[face] != 0) side_[face] = rim;
+  }
+  std::copy_if(scope.begin(), scope.end(), std::back_inserter(second), [&](Index face) { return side_[face] == rim; });
+  for (const Index face : scope) side_[face] = 0;
+  std::sort(scope.begin(), scope.end());
+  const MinimumCut cut = cutter_.cut(scope, region.first, second);
+  Array<char> out(faces.size(), 0);
+  auto at = scope.begin();
+  for (std::size_t i = 0; i < faces.size() && at != scope.end(); ++i) {
+    if (faces[i] == *at) out[i] = element(cut.is_first, at++ - scope.begin());
+  }
+  return out;
+}
+
 FaceParts OverlapSplitter::split() {
   Array<Part> parts = list_parts();
   Array<Index> entries(pairs_.of.size());
@@ -167,7 +211,7 @@ FaceParts OverlapSplitter::split() {
     if (region.first.empty()) break;
     before_cut_();
     const Index part = parts_.of_face[region.first.front()];
-    divide(part, cutter_.cut(parts[part].faces, region.first, region.second).is_first, parts);
+    divide(part, cut(parts[part].faces, region), parts);
   }
   return number_parts(graph_, parts_.of_face);
 }

@@ -65,6 +65,8 @@ class OverlapSplitter {
   Conflict find_conflict(Index seed);
   Region find_region(const Array<Part>& parts);
   Region grow_region(const Conflict& conflict);
+  Array<char> cut(const Array<Index>& faces, const Region& region);
+  Array<char> cut_nearby(const Array<Index>& faces, const Region& region);
   void divide(Index part, const Array<char>& is_first, Array<Part>& parts);
 
   const FaceGraph& graph_;
@@ -72,6 +74,7 @@ class OverlapSplitter {
   MinimumCutter& cutter_;
   const std::function<void()>& before_cut_;
   FaceParts parts_;
+  double searched_ = 0;  // faces among which cuts were searched
 
   // Scratch, as it is here between calls.
   Array<char> is_seen_;  // (entries) 0

@@ -87,6 +87,8 @@ void PartMerger::improve() {
       const Array<Index>&first = faces[pair.first], &second = faces[pair.second];
       const Index a = first.front(), b = second.front();
       if (!tried.insert({a, made[a], b, made[b]}).second) continue;
+      searched_ += static_cast<double>(first.size() + second.size());
+      if (searched_ > most_searches * graph_.face_count()) return;
       Array<Index> scope;
       std::merge(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(scope));
       has_changed = improve(pair.first, pair.second, scope, length);

@@ -24,7 +24,7 @@ class PartMerger {
   // Closes cuts between two parts that do not overlap, the longest first.
   void merge_back();
 
-  // Chooses the cuts between neighbors again.
+  // Chooses the cuts between neighbors again, as long as that takes no more than `most_searches`.
   void improve();
 
   // See straight_cuts.hpp.
@@ -45,6 +45,7 @@ class PartMerger {
   MinimumCutter& cutter_;
   const std::function<void()>& before_cut_;
   FaceParts& parts_;
+  double searched_ = 0;  // faces among which cuts were searched
 };
 
 }  // namespace lsgp

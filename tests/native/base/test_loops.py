@@ -85,7 +85,7 @@ REVIEWED = {
     "creases/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
     "creases/crease_borders.cpp": [
         (
-            "while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area)",
+            "while (!smallest.empty() && smallest.top().first < least_area)",
             "an entry for each patch and each time two become one",
             OWN,
         ),
@@ -383,7 +383,7 @@ REVIEWED = {
         ),
     ],
     "division/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
-    "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
+    "split/merge_islands.cpp": [("while (left_ > 0 && merge_next())", "each round makes two groups one", WITHIN)],
     "split/mirrored_islands.cpp": [
         ("while (!queue.empty() && queue.top().second != to)", NEAREST, OWN),
         ("for (Index h = at(to).by; h != none; h = at(mesh_.origin(h)).by)", LINKED, SHORT),
@@ -402,6 +402,11 @@ REVIEWED = {
     "split/overlap_pairs.cpp": [("while (!front.empty())", ONCE_EACH, SHORT)],
     "split/overlap_splitter.cpp": [
         ("while (!front.empty())", ONCE_EACH, SHORT),
+        (
+            "while (ring < scope.size() && (ring == 0 || scope.size() < faces_nearby))",
+            "a ring of faces, each once",
+            SHORT,
+        ),
         ("for (;;)", "each cut parts a pair of triangles that lay on each other", OWN),
     ],
     "split/part_merger.cpp": [
