@@ -60,7 +60,7 @@ def test_every_preset_unwraps_hundreds_of_handles(preset: Preset) -> None:
 
 def test_layouts_whose_rounding_would_take_too_much_are_refused() -> None:
     with pytest.raises(lsgp.SolverError, match=r"GB of memory; the limit is"):
-        lsgp.remesh_to_quads(surface(meshes.perforated_slab(8)))
+        lsgp.remesh_to_quads(surface(meshes.perforated_slab(10)))
 
 
 @pytest.mark.many_solves
