@@ -13,6 +13,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import Refused
+
 # 5.0 has one UV selection for all layers and nodes in every material.
 SINCE_5 = bpy.app.version >= (5, 0)
 # Older ones, such as 4.3, give no access to them on meshes in edit mode.
@@ -64,7 +66,7 @@ def edited_edge_flags(mesh: bpy.types.Mesh, name: str) -> NDArray[np.bool_]:
 def set_edited_edge_flags(mesh: bpy.types.Mesh, name: str, flags: NDArray[np.bool_]) -> None:
     """Give the edges of a mesh in edit mode an attribute, (e,) bool, or take it off them where none has it.
 
-    This invalidates Python's references to its elements.
+    This invalidates Python's references to its elements.  Raises Refused where this Blender needs a window for it.
     """
     if not flags.any():
         if has_edge_flags(mesh, name):
@@ -74,6 +76,8 @@ def set_edited_edge_flags(mesh: bpy.types.Mesh, name: str, flags: NDArray[np.boo
         layer = bm.edges.layers.bool.get(name) or bm.edges.layers.bool.new(name)
         for edge, flag in zip(bm.edges, flags.tolist(), strict=True):
             edge[layer] = flag
+    elif bpy.context.window is None:
+        raise Refused("this version of Blender marks edges in its window only; use 4.5 or newer without one")
     else:
         bpy.ops.object.mode_set(mode="OBJECT")
         attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "BOOLEAN", "EDGE")

@@ -95,10 +95,14 @@ def _scratch_meshes(parts: Sequence[Islands]) -> Iterator[list[bpy.types.Mesh]]:
 
 
 def _context_of(scene: bpy.types.Scene, objects: list[bpy.types.Object]) -> dict[str, object]:
-    """A context in which these objects are selected, the first one is active, and edit mode is entered with them."""
+    """A context in which these objects are selected, the first one is active, and edit mode is entered with them. It
+    has no area: in one of images that shows no UV maps Blender 5.2 does not pack.
+    """
     layer = scene.view_layers[0]
     layer.objects.active = objects[0]
     return {
+        "area": None,
+        "region": None,
         "scene": scene,
         "view_layer": layer,
         "object": objects[0],
