@@ -94,7 +94,7 @@ def without_repeated_corners(mesh: PolygonMesh, others: NDArray[np.int32] = _NON
 
 def not_covered(mesh: PolygonMesh, triangulation: Triangulation) -> NDArray[np.intp]:
     """The polygons that name a vertex twice and are no region with its holes joined to its outline, each by an edge to
-    and from it: some of their triangles name a vertex twice or face the other way."""
+    and from it: some of their triangles name a vertex twice or face the other way, or a corner is in none."""
     touching = _touching_themselves(mesh)
     if not len(touching):
         return touching
@@ -108,7 +108,11 @@ def not_covered(mesh: PolygonMesh, triangulation: Triangulation) -> NDArray[np.i
         toward = (normal * whole[polygon]).sum(axis=1)
         covers = toward >= -ROUNDING * (whole[polygon] ** 2).sum(axis=1)
     covers &= (vertices != np.roll(vertices, 1, axis=1)).all(axis=1) & whole[polygon].any(axis=1)
-    return np.unique(polygon[~covers])
+    owner = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
+    is_used = np.zeros(len(mesh.corners), bool)
+    is_used[triangulation.corner[mine]] = True
+    incomplete = np.intersect1d(touching, owner[~is_used])
+    return np.union1d(polygon[~covers], incomplete)
 
 
 def _touching_themselves(mesh: PolygonMesh) -> NDArray[np.intp]:

@@ -85,6 +85,16 @@ REVIEWED = {
     "creases/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
     "creases/crease_borders.cpp": [
         (
+            "for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end)",
+            "borders, each once: the first of a group is in it",
+            SHORT,
+        ),
+        (
+            "while (end < order.size() && order[end].first <= (1 - same_share) * order[begin].first)",
+            "borders, each once",
+            SHORT,
+        ),
+        (
             "while (!smallest.empty() && smallest.top().first < least_area)",
             "an entry for each patch and each time two become one",
             OWN,
@@ -330,6 +340,9 @@ REVIEWED = {
         ("for (int i = 0, end = 0; i < plan.front_count(); i = end)", "passes a front each time", OWN),
     ],
     "solvers/dense_kernels_for.cpp": [("for (; j % 4 != 0; --j)", "three rounds", SHORT)],
+    "solvers/eigenproblem.cpp": [
+        ("for (double share = shift;; share *= next_shift)", "up to the largest shift", WITHIN),
+    ],
     "solvers/elimination.cpp": [
         ("while (other != at && other != size_)", LINKED, SHORT),
         ("for (int root = child[eliminated_]; root != -1; root = sibling[root])", LINKED, SHORT),
