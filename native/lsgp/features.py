@@ -10,6 +10,7 @@ from .base import arguments
 from .base.angles import arctan2
 from .base.arguments import FloatArray, IndexArray
 from .base.edge_keys import edge_keys
+from .base.unique_rows import unique_rows
 from .surface import Surface, require_vertices
 
 
@@ -41,7 +42,7 @@ def feature_edges(
         found.append(surface.seams)
     if arguments.flag("borders", borders):
         found += [sides[order[begin[count == 1]]], surface.borders]
-    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0).astype(np.int32)
+    return unique_rows(np.sort(np.concatenate(found), axis=1)).rows.astype(np.int32)
 
 
 def _bends(surface: Surface, sides: IndexArray, first: NDArray[np.intp], second: NDArray[np.intp]) -> FloatArray:

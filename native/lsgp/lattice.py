@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .base import arguments
 from .base.arguments import FloatArray, IndexArray
+from .base.unique_rows import unique_rows
 from .errors import InputError
 
 # Mantissa of float32: below 2^e it holds every multiple of 2^(e - 24).
@@ -146,9 +147,8 @@ def _on_coarser_grid(
     largest = float(np.abs(uv[corners]).max())
     step = 2.0 ** (math.ceil(math.log2(largest + 1)) - _MANTISSA_BITS)
     # A copy of a vertex on a cut: all corners that share its place.
-    keys = np.stack([triangles.ravel()[corners], np.repeat(island, 3)[corners], *uv[corners].T])
-    _, first, copy_of = np.unique(keys, axis=1, return_index=True, return_inverse=True)
-    copy_of = copy_of.reshape(-1)
+    keys = np.stack([triangles.ravel()[corners], np.repeat(island, 3)[corners], *uv[corners].T], axis=1)
+    _, first, copy_of, _ = unique_rows(keys)
     old = uv[corners[first]] @ (1, 1j)
     copy_at = np.full(len(uv), -1)
     copy_at[corners] = copy_of

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..base.arguments import IndexArray
 from ..base.progress import Steps
+from ..base.unique_rows import unique_rows
 from .texel_raster import ON_EDGE, ComplexArray, Indices, cross, edge_distances, has_area
 
 # Walks over more triangles are given up; they happen only where triangles are far smaller than texels.
@@ -107,8 +108,7 @@ def _partners(triangles: IndexArray, mapped: NDArray[np.bool_], orientation: NDA
     first, second = triangles.ravel().astype(np.int64), triangles[:, [1, 2, 0]].ravel().astype(np.int64)
     edges = np.flatnonzero(np.repeat(mapped, 3))
     pair = np.sort(np.stack([first, second], axis=1)[edges], axis=1)
-    _, group, sizes = np.unique(pair, axis=0, return_inverse=True, return_counts=True)
-    group = group.reshape(-1)
+    _, _, group, sizes = unique_rows(pair)
     order = np.argsort(group, kind="stable")
     order = edges[order[sizes[group[order]] == 2]].reshape(-1, 2)
     same_side = orientation[order[:, 0] // 3] == orientation[order[:, 1] // 3]

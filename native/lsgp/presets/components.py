@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
+from ..base.unique_rows import unique_rows
 from ..ledger import build_ledger
 from ..results import Result
 from ..surface import Surface
@@ -61,8 +62,8 @@ class Components:
 
     def islands(self, result: Result) -> NDArray[np.intp]:
         """The number of islands, (c,)."""
-        pairs = np.unique(np.stack([self.of_triangle, result.island])[:, result.solved], axis=1)
-        return self._counts(pairs[0])
+        pairs = np.stack([self.of_triangle, result.island], axis=1)[result.solved]
+        return self._counts(unique_rows(pairs).rows[:, 0])
 
     def cuts(self, result: Result) -> NDArray[np.intp]:
         """The number of edges that are cut, (c,)."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import edge_keys
 from ..base.progress import UNTOLD, Steps
+from ..base.unique_rows import unique_rows
 from ..errors import Elements
 from ..surface import Surface
 from ..triangles import side_lengths
@@ -47,7 +48,7 @@ class DividedSurface:
             return Elements("vertices", indices[indices < len(self.source.positions)].astype(np.int32))
         if elements.kind == "edges":
             edges = _edges_of(self.ends, indices.reshape(-1, 2))
-            return Elements("edges", np.unique(edges[edges[:, 0] >= 0], axis=0).astype(np.int32))
+            return Elements("edges", unique_rows(edges[edges[:, 0] >= 0]).rows.astype(np.int32))
         return elements
 
 
@@ -74,7 +75,7 @@ def _divided(source: Surface, longest: float, most: int, steps: Steps) -> Divide
     while True:
         steps.tell()
         ahead = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
-        edges, edge = np.unique(np.sort(ahead, axis=2).reshape(-1, 2), axis=0, return_inverse=True)
+        edges, _, edge, _ = unique_rows(np.sort(ahead, axis=2).reshape(-1, 2))
         edge = edge.reshape(-1, 3)
         lengths = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1) * scale[edges].mean(axis=1)
         # Of edges that are equally long the first is divided, so that both triangles there choose the same one.

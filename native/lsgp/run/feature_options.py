@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.arguments import IndexArray
+from ..base.unique_rows import unique_rows
 from ..features import feature_edges
 from ..io.side_files import UsageError, load_json, pairs_in
 from ..stitching import at_stitched
@@ -34,7 +35,7 @@ class FeatureKinds:
         found = feature_edges(surface, angle=self.angle, seams=self.seams, borders=self.borders)
         if not self.sharp:
             return found
-        return np.unique(np.concatenate([found, np.sort(sharp, axis=1)]), axis=0).astype(np.int32)
+        return unique_rows(np.concatenate([found, np.sort(sharp, axis=1)])).rows.astype(np.int32)
 
 
 def add_features_option(command: argparse.ArgumentParser, which: str) -> None:

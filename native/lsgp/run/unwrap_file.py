@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..api import parameterize
 from ..base.progress import Progress, share_of
+from ..base.unique_rows import unique_rows
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
 from ..io.mesh_formats import output_format
@@ -166,7 +167,7 @@ def _duplicates(result: Result) -> NDArray[np.bool_]:
 
 def _tiles_in_use(uv: NDArray[np.float64]) -> int:
     """uv: (m, 3, 2), each triangle inside one tile."""
-    return len(np.unique(np.floor(uv.mean(axis=1)), axis=0))
+    return len(unique_rows(np.floor(uv.mean(axis=1))).rows)
 
 
 def require_flawless(warnings: Sequence[Finding]) -> None:
