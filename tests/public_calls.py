@@ -162,6 +162,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"corner_uv": FREE_RESULT.corner_uv},
     ),
     "packer_name": (lsgp.packer_name, {}),
+    "draw_layout": (lsgp.draw_layout, {"surface": WHOLE, "result": FREE_RESULT, "size": 64}),
     "pad_image": (
         lsgp.pad_image,
         {
@@ -207,7 +208,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
 if lsgp.packer_name() is None:
     del FUNCTIONS["pack_islands"]  # it is refused whatever is passed
 # What these refuse is in tests/cli and tests/native/io.
-FILES = {"read_mesh_file", "write_mesh_file", "MeshFile.surface", "MeshFile.cones", "MeshFile.told"}
+FILES = {"read_mesh_file", "write_mesh_file", "write_png", "MeshFile.surface", "MeshFile.cones", "MeshFile.told"}
 # Errors, and what the library makes for callers to read.
 NOT_CALLED = {
     *("Cancelled", "CurvatureError", "Elements", "Finding", "InputError", "LsgpError", "SolverError", "TopologyError"),

@@ -21,8 +21,9 @@ The same step by step, with cones placed automatically and all options:
 (0, 1.0)
 
 Further functions: `read_mesh_file` and `write_mesh_file` for meshes in files, `Solver` for repeated maps of one
-surface, `measure_distortion` for existing coordinates, `pack_islands`, `pad_image` and `extract_quads`. Every error is
-an `LsgpError` with a code, a message and the elements concerned. The command `lsgp` does the same for files.
+surface, `measure_distortion` for existing coordinates, `draw_layout`, `pack_islands`, `pad_image` and `extract_quads`.
+Every error is an `LsgpError` with a code, a message and the elements concerned. The command `lsgp` does the same for
+files.
 
 The method: Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for Global Parameterization, WSCG
 2017.
@@ -58,9 +59,11 @@ from .errors import (
 )
 from .features import feature_edges
 from .images.gutters import pad_image
+from .images.layout_picture import draw_layout
 from .images.mip_levels import pad_mip_levels
 from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
+from .io.png_files import write_png
 from .layouts.islands import correct_aspect, fit_placement
 from .layouts.packing import pack_islands, packer_name
 from .layouts.stacking import Stacks, find_stacks
@@ -138,6 +141,7 @@ __all__ = [
     "correct_aspect",
     "crease_borders",
     "cut_costs",
+    "draw_layout",
     "edge_directions",
     "extract_quads",
     "feature_edges",
@@ -168,4 +172,5 @@ __all__ = [
     "triangle_distortion",
     "triangle_texel_density",
     "write_mesh_file",
+    "write_png",
 ]

@@ -3,34 +3,14 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from dataclasses import replace
 
 import lsgp
 import numpy as np
 import pytest
-from lsgp.batch.pictures import EQUAL, FLIPPED, LARGER, LEVELS, MARGIN, SIDE, SMALLER, VIEW, picture_of, png
+from lsgp.batch.pictures import EQUAL, FLIPPED, LARGER, LEVELS, MARGIN, SIDE, SMALLER, VIEW, picture_of
 from meshes import Mesh, cube, grid, icosphere
-
-
-def pixels_of(data: bytes) -> np.ndarray:
-    """A PNG of rows without filters, read by the letter of its specification."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    chunks, at = {}, 8
-    while at < len(data):
-        (length,), kind = struct.unpack(">I", data[at : at + 4]), data[at + 4 : at + 8]
-        content = data[at + 8 : at + 8 + length]
-        (check,) = struct.unpack(">I", data[at + 8 + length : at + 12 + length])
-        assert zlib.crc32(kind + content) == check
-        chunks[kind] = content
-        at += 12 + length
-    assert list(chunks) == [b"IHDR", b"IDAT", b"IEND"]
-    width, height, depth, color, *rest = struct.unpack(">IIBBBBB", chunks[b"IHDR"])
-    assert (depth, color, *rest) == (8, 2, 0, 0, 0)
-    rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
-    assert not rows[:, 0].any()
-    return rows[:, 1:].reshape(height, width, 3)
+from png_check import pixels_of
 
 
 def unwrapped(mesh: Mesh) -> tuple[lsgp.Surface, lsgp.Result]:
@@ -43,11 +23,6 @@ def halves(surface: lsgp.Surface, result: lsgp.Result) -> tuple[np.ndarray, np.n
     pixels = pixels_of(picture_of(surface, result)).astype(int)
     assert pixels.shape == (SIDE, 2 * SIDE, 3)
     return pixels[:, :SIDE], pixels[:, SIDE:]
-
-
-def test_png_holds_the_pixels() -> None:
-    pixels = np.random.default_rng(1).integers(0, 256, (5, 7, 3), np.uint8)
-    assert (pixels_of(png(pixels)) == pixels).all()
 
 
 def test_a_flat_square_is_laid_out_without_distortion() -> None:

@@ -10,8 +10,6 @@ Arrays are by columns, (coordinate, corner, triangle) or (coordinate, point), wh
 
 from __future__ import annotations
 
-import struct
-import zlib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..io.png_files import png
 from ..io.whole_files import write_whole
 from ..results import Result
 from ..surface import Surface
@@ -52,17 +51,6 @@ def write_picture(path: Path, surface: Surface, result: Result) -> None:
     """Write the picture into a folder that is made where it is missing.  Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, picture_of(surface, result))
-
-
-def png(pixels: NDArray[np.uint8]) -> bytes:
-    """Pixels (h, w, 3) as a PNG file."""
-    height, width, _ = pixels.shape
-    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)  # 0: no filter
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    chunks = [(b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b"")]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in chunks
-    )
 
 
 def _surface_picture(seen: Floats, normal: Floats, uv: Floats) -> NDArray[np.uint8]:

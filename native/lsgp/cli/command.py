@@ -20,7 +20,9 @@ from ..base.counted import counted
 from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
 from ..certificate import certificate_table
 from ..errors import Elements, Finding, LsgpError
+from ..images.layout_picture import draw_layout
 from ..io.mesh_formats import BY_KEY, formats_table
+from ..io.png_files import write_png
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
 from ..io.standard_streams import complain, hold_standard_descriptors, say
@@ -142,6 +144,9 @@ def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
     )
     add_unwrap_options(unwrap)
     add_threads_option(unwrap)
+    unwrap.add_argument(
+        "--picture", metavar="FILE.png", action=Writes, type=Path, help="draw the layout, its cuts and its cones"
+    )
     unwrap.add_reported(_unwrap)
 
 
@@ -246,6 +251,8 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     """The report and the lines for people."""
     with ProgressLine(sys.stderr) as progress:
         result = unwrap_file(args, run, progress, args.format)
+    if args.picture is not None:
+        write_png(args.picture, draw_layout(run.surface, result))
     _warn(result.warnings, run.triangulation)
     lines = [
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "

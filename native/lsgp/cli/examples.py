@@ -7,7 +7,7 @@ import argparse
 
 EXAMPLES = {
     "unwrap": (
-        "lsgp unwrap model.obj -o painted.obj --preset paint",
+        "lsgp unwrap model.obj -o painted.obj --preset paint --picture layout.png",
         "lsgp unwrap model.obj -o tiled.obj --seamless --tiles 32",
         "lsgp unwrap model.glb -o even.glb --cones auto:12 --mode low-stretch",
     ),

@@ -34,6 +34,8 @@ def require_usable_paths(args: argparse.Namespace) -> None:
     require_separate_files(every)
     if args.command == "unwrap":
         output_format(None if is_standard_stream(args.output) else args.output, args.format)
+        if args.picture is not None and args.picture.suffix.lower() != ".png":
+            raise UsageError(f"the picture is a PNG file; name it .png, not '{args.picture}'")
     elif args.command == "quads":
         require_quads_output(args)
     elif args.command == "pad":
