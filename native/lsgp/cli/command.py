@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
@@ -48,14 +49,21 @@ OUTPUT = "the file, or - for standard output"
 
 class _Parser(argparse.ArgumentParser):
     """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer. A message
-    that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed."""
+    that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed. It has two lines, the
+    second in place of argparse's usage, which has thirty before the reason."""
 
     def print_help(self, file: TextIO | None = None) -> None:
         say(sys.stdout if file is None else file, self.format_help().rstrip("\n"))
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{self.format_usage()}{self.prog}: error: {message}")
+        complain(f"{self.prog}: error: {message}\n{self.prog} --help lists what it takes")
         raise SystemExit(USAGE)
+
+    def refuse_unknown(self, unknown: Sequence[str]) -> NoReturn:
+        """End with the words that nothing takes, and the option that the first of them may mean."""
+        known = [option for action in self._actions for option in action.option_strings]
+        meant = get_close_matches(unknown[0].partition("=")[0], known, 1)
+        self.error(f"unrecognized arguments: {' '.join(unknown)}" + (f"; is {meant[0]} meant?" if meant else ""))
 
 
 class _Command(_Parser):
@@ -63,6 +71,7 @@ class _Command(_Parser):
 
     def __init__(self, **further: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=Formatter, **further)
+        self.set_defaults(parser=self)
 
     def add_paths(self, output: str) -> None:
         """The mesh to read and the file to write."""
@@ -96,7 +105,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(arguments: list[str]) -> int:
     parser = _parser()
     try:
-        args = parser.parse_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
+        args, unknown = parser.parse_known_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
+        if unknown:
+            vars(args).get("parser", parser).refuse_unknown(unknown)
         if args.command is None and not (args.version or args.formats):
             parser.error("a command is needed: unwrap, cones, quads, batch, measure or pad")
     except SystemExit as end:  # argparse has said why

@@ -40,8 +40,14 @@ STL = Format("STL", ".stl", None)
 FORMATS = (OBJ, OFF, PLY, GLTF, GLB, STL)
 BY_KEY = {form.key: form for form in FORMATS}
 
-# Suffixes of compressed files, and the programs that decompress them.
-_COMPRESSED = {".gz": "gunzip", ".bz2": "bunzip2", ".xz": "unxz", ".zst": "unzstd", ".zip": "unzip"}
+# First bytes of compressed files, whatever their names, and the programs that decompress them.
+_COMPRESSED = {
+    b"\x1f\x8b": "gunzip",
+    b"BZh": "bunzip2",
+    b"\xfd7zXZ\0": "unxz",
+    b"\x28\xb5\x2f\xfd": "unzstd",
+    b"PK\3\4": "unzip",
+}
 
 
 def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | None = None) -> Format:
@@ -52,10 +58,11 @@ def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | 
     """
     suffix = "" if path is None else Path(path).suffix.lower()
     found = BY_KEY.get(suffix[1:]) or (BY_KEY[given] if given else _by_content(data)) or (OBJ if path is None else None)
-    if suffix in _COMPRESSED:
+    program = next((program for begin, program in _COMPRESSED.items() if data.startswith(begin)), None)
+    if program is not None and found != STL:  # which may begin with any bytes
         raise InputError(
             "UNKNOWN_FORMAT",
-            f"'{os.fspath(path)}' is compressed. Decompress it first, for instance with {_COMPRESSED[suffix]}.",
+            f"'{os.fspath(path or '-')}' is compressed. Decompress it first, for instance with {program}.",
         )
     if found is None:
         readable = _one_of([form.name for form in FORMATS])

@@ -223,7 +223,7 @@ def _parsed(data: bytes, path: Path) -> Any:
     try:
         return parse_json(data)
     except JsonError as error:
-        raise UsageError(f"'{path}' is not valid JSON: {error}") from error
+        raise UsageError(f"'{path}' is not valid JSON: {error}; correct it there") from error
 
 
 def _is_stroke(row: Any) -> bool:

@@ -67,6 +67,23 @@ def flushed(code: int) -> int:
 
 
 def describe(error: OSError) -> str:
-    """The system's message and the file it concerns."""
-    where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
-    return f"{error.strerror or error}{where}"
+    """The system's message, the file it concerns, and what to do."""
+    if error.filename is None:
+        return str(error.strerror or error)
+    path = os.fsdecode(error.filename)
+    if isinstance(error, FileNotFoundError):
+        remedy = "; check the path" + ("" if os.path.isabs(path) else f", which begins in '{_working_folder()}'")
+    elif isinstance(error, IsADirectoryError):
+        remedy = "; name a file in this folder, or unwrap all of them with lsgp batch"
+    elif isinstance(error, PermissionError):
+        remedy = "; change its permissions, or name another"
+    else:
+        remedy = ""
+    return f"{error.strerror or error}: '{path}'{remedy}"
+
+
+def _working_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:  # it has been deleted
+        return "."
