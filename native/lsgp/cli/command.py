@@ -49,8 +49,8 @@ OUTPUT = "the file, or - for standard output"
 
 class _Parser(argparse.ArgumentParser):
     """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer. A message
-    that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed. It has two lines, the
-    second in place of argparse's usage, which has thirty before the reason."""
+    that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed. It has two lines:
+    argparse's own has thirty of usage before the reason."""
 
     def print_help(self, file: TextIO | None = None) -> None:
         say(sys.stdout if file is None else file, self.format_help().rstrip("\n"))

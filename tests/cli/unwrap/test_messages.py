@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a command line says to the mistakes that are made most often: in two lines what happened, why, and what to do."""
+"""What a command line says to frequent mistakes: in two lines what happened, why, and what to do."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MISTAKES = {
     "no command": ((), 2, "a command is needed", "unwrap, cones, quads, batch, measure or pad"),
     "unknown command": (("unwarp", "cube.obj"), 2, "invalid choice: 'unwarp'", "'unwrap'"),
     "no output": (("unwrap", "cube.obj"), 2, "where to write to is missing", "-o/--output, or --in-place"),
-    "no file": (("unwrap", "cube.ojb", *OUT), 2, "No such file or directory: 'cube.ojb'", "check the path, which begins"),
+    "no file": (("unwrap", "cube.ojb", *OUT), 2, "No such file or directory: 'cube.ojb'", "check the path"),
     "a folder": (("unwrap", ".", *OUT), 2, "'.'", "lsgp batch"),
     "no folder": (("unwrap", "cube.obj", "-o", "none/out.obj"), 2, "there is no folder", "none"),
     "onto itself": (("unwrap", "cube.obj", "-o", "cube.obj"), 2, "is the input", "--in-place"),
@@ -53,19 +53,17 @@ MISTAKES = {
     "no vertex": (("unwrap", "foreign.obj", *OUT), 3, r"Face 0 \(line 4\)", "Export the mesh again"),
     "one side": (("unwrap", "strip.obj", *OUT), 3, "one side only", "Delete or split faces"),
     "no cones": (("unwrap", "cube.obj", *OUT, "--cones", "one.json"), 3, "1 cone cannot take up", "Mark more cones"),
-    "cone": (("unwrap", "cube.obj", *OUT, "--cones", "far.json"), 3, "outside the vertices 0 to 97", "Mark vertices of"),
+    "cone": (("unwrap", "cube.obj", *OUT, "--cones", "far.json"), 3, "outside the vertices 0 to 97", "Mark vertices"),
     "cone twice": (("unwrap", "cube.obj", *OUT, "--cones", "twice.json"), 3, "listed twice", "List every cone once"),
-    "angles": (("unwrap", "cube.obj", *OUT, "--cones", "angles.json"), 3, "requires 720 degrees", "leave one automatic"),
-    "no JSON": (("unwrap", "cube.obj", *OUT, "--cones", "broken.json"), 2, "'broken.json' is not valid JSON", "correct it"),
-    "other JSON": (("unwrap", "cube.obj", *OUT, "--cones", "other.json"), 3, "does not have the form", "Correct the file"),
+    "angles": (("unwrap", "cube.obj", *OUT, "--cones", "angles.json"), 3, "requires 720 degrees", "one automatic"),
+    "no JSON": (("unwrap", "cube.obj", *OUT, "--cones", "broken.json"), 2, "is not valid JSON", "correct it there"),
+    "other JSON": (("unwrap", "cube.obj", *OUT, "--cones", "other.json"), 3, "not have the form", "Correct the file"),
     "no coordinates": (("measure", "cube.obj"), 3, "NO_UV: The file has no texture coordinates", "lsgp unwrap"),
 }
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_two_lines_say_what_is_wrong_and_what_to_do(
-    cube_files: Path, lsgp: Callable[..., Ended], mistake: str
-) -> None:
+def test_two_lines_say_what_is_wrong_and_what_to_do(cube_files: Path, lsgp: Callable[..., Ended], mistake: str) -> None:
     arguments, code, wrong, remedy = MISTAKES[mistake]
     for name, content in FILES.items():
         (cube_files / name).write_bytes(content if isinstance(content, bytes) else content.encode())
