@@ -11,6 +11,7 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
+from nightly import leave_out_nightly
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -54,11 +55,12 @@ def few_tries(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lsgp.layouts.layout_search._TRIES", (4, 4))
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Suites inside Blenders are single tests of minutes: each worker begins with some, so that none is waited for.
 
     With --dist worksteal a worker gets an equal share of the list, in its order, and takes from others when it is done.
     """
+    leave_out_nightly(config, items)
     suites = [item for item in items if item.path.name == "test_in_blender.py"]
     others = iter([item for item in items if item not in suites])
     suites.reverse()  # the one with a window comes last, and takes longest

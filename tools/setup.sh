@@ -49,8 +49,14 @@ set_up_system() {
         missing+=(python3.11-dev)
     [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
     if command -v ccache >/dev/null; then
-        export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_DIR=$cache/ccache
+        set_up_ccache
     fi
+}
+
+# Keeps what was compiled, where it is installed or can be: the wheel and the C++ tests take the same objects.
+set_up_ccache() {
+    command -v ccache >/dev/null || (install_packages ccache) || return 0
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_DIR=$cache/ccache
 }
 
 # The header of the C++ unit tests.

@@ -5,6 +5,8 @@ tests/packaging/test_in_blender.py starts them from an ordinary pytest run, or i
 """
 
 import os
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -13,16 +15,26 @@ if "CONE_UNWRAP_EXTENSION" not in os.environ:
 else:
     import bpy
 
-    def pytest_addoption(parser):
-        parser.addoption("--few-tries", action="store_true", help="look for tight layouts in few ways, which is fast")
+    sys.path.append(str(Path(__file__).resolve().parents[1]))
+    from nightly import leave_out_nightly
 
-    @pytest.fixture(autouse=True, scope="session")
-    def tries(pytestconfig):
-        """How dense tight layouts get no Blender changes, and all else is so after any number of tries."""
-        if pytestconfig.getoption("few_tries"):
+    def pytest_addoption(parser):
+        parser.addoption("--few-tries", action="store_true", help="look for large layouts in few ways, which is fast")
+
+    def pytest_collection_modifyitems(config, items):
+        leave_out_nightly(config, items)
+
+    @pytest.fixture(autouse=True)
+    def tries(request, monkeypatch):
+        """With --few-tries tight layouts are looked for in few ways, and Blender's packer turns no islands: how much of
+        the square is filled by that no Blender changes, and all else is so after any number of tries."""
+        if request.config.getoption("few_tries") and not request.node.get_closest_marker("all_tries"):
+            from installed import addon
             from lsgp.layouts import layout_search
 
-            layout_search._TRIES = (4, 4)
+            monkeypatch.setattr(layout_search, "_TRIES", (4, 4))
+            for name in ("ENOUGH", "ENOUGH_UNTURNED"):
+                monkeypatch.setattr(addon.jobs.layouts.packing, name, 0.0)
 
     @pytest.fixture(autouse=True)
     def empty_scene():

@@ -5,9 +5,10 @@
     blender --enable-event-simulate --python-exit-code 1 --python run_in_window.py -- ZIP REPORT.xml [PART OF A NAME]
 
 A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Only
-those with the part in their file's name and theirs are run where one is given. Exit code 0 only when all passed;
-REPORT.xml is a junit report. Beside it, in the folder pictures, is the screen as each test left it, where ImageMagick's
-import is installed. ``tools/packaging/test_in_blender.py --window`` does all of this.
+those with the part in their file's name and theirs are run where one is given, and those marked nightly with
+LSGP_FULL_SWEEP=1. Exit code 0 only when all passed; REPORT.xml is a junit report. Beside it, in the folder pictures, is
+the screen as each test left it, where ImageMagick's import is installed.
+``tools/packaging/test_in_blender.py --window`` does all of this.
 """
 
 import os
@@ -22,7 +23,8 @@ from xml.etree import ElementTree
 
 import bpy
 
-sys.path.append(str(Path(__file__).parent))
+sys.path += [str(Path(__file__).parent), str(Path(__file__).resolve().parents[1])]
+from nightly import EVERYTHING
 from run_in_blender import EXTENSION, install, require_bundled_library
 from windows import PICTURES, area, region, take_picture, window
 
@@ -92,7 +94,11 @@ def main() -> None:
     for path in sorted(folder.glob("*_tests.py")):
         functions = vars(import_module(path.stem))
         wanted = [
-            name for name in functions if name.startswith("test_") and (not only or only[0] in f"{path.stem}.{name}")
+            name
+            for name, test in functions.items()
+            if name.startswith("test_")
+            and (not only or only[0] in f"{path.stem}.{name}")
+            and (EVERYTHING or all(mark.name != "nightly" for mark in getattr(test, "pytestmark", ())))
         ]
         tests |= {name: functions[name]() for name in wanted}
     running = run(tests, Path(report))

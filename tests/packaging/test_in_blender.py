@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from blenders import leave_out, real_blenders
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,15 +24,18 @@ def run_tool(*arguments: str) -> str:
     return done.stdout
 
 
-def test_addon_in_bpy(bpy_python, wheel, tmp_path):
-    assert "tests, 0 failures" in run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
+def test_addon_in_bpy(bpy_python, wheel, tmp_path, pytestconfig):
+    """All of them, or those that are selected here by marks, as by `tools/test --quick`."""
+    chosen = pytestconfig.getoption("markexpr")
+    how = ["--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path)]
+    assert "tests, 0 failures" in run_tool(*how, "--", *(["-m", chosen] if chosen else []), "--few-tries")
 
 
+@pytest.mark.slow
 def test_addon_in_a_real_blender(real_blender, wheel, staged):
     """In its window, too, where there is a screen; and the Blender accepts the zip for blender.org's.
 
-    What no Blender changes runs in bpy, above, and tight layouts are looked for in all ways there;
-    `tools/test_all_blenders` runs all of it everywhere.
+    What no Blender changes runs in bpy, above; `tools/test_all_blenders` runs all of it everywhere.
     """
     (package,) = staged.parent.glob("*.zip")
     window = ["--window"] if real_blender.has_screen else []

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 from installed import addon
 from mathutils import Matrix
-from one_blender import one_blender
+from nightly import nightly
 from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_grid, add_sphere, covered_twice, joined
+
+pytestmark = pytest.mark.slow
 
 command = addon.jobs.batch.command
 
@@ -134,7 +136,8 @@ def test_files_of_all_kinds(library, tmp_path):
         assert all(sphere.corner_normals[loop].vector.dot(face.normal) > 0.999 for loop in face.loop_indices)
 
 
-@pytest.mark.parametrize("preset", ["paint", *one_blender("bake", "tile")])
+@pytest.mark.one_blender
+@pytest.mark.parametrize("preset", ["paint", "tile", *nightly("bake")])
 def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_path, preset):
     out = tmp_path / "out"
     assert run(library / "two.blend", "--out", out, "--preset", preset, "--no-pictures") == 0
@@ -152,7 +155,7 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
 
 
 @pytest.mark.one_blender
-@pytest.mark.parametrize("add_large", [add_sphere, add_ball], ids=["automatic cones", "marked cones"])
+@pytest.mark.parametrize("add_large", [add_ball, *nightly(add_sphere)], ids=["marked cones", "automatic cones"])
 def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path, add_large):
     speck = add_grid("Speck")  # without cuts, whose two sides would differ as well
     triangles = 2 * len(speck.data.polygons)
@@ -204,7 +207,8 @@ def scaled(tmp_path):
     return tmp_path / "list.txt"
 
 
-@pytest.mark.parametrize("preset", [*one_blender([]), ["--preset", "paint"]])
+@pytest.mark.one_blender
+@pytest.mark.parametrize("preset", [*nightly([]), ["--preset", "paint"]])
 def test_all_objects_get_the_texel_density_that_is_asked_for(scaled, tmp_path, preset):
     out = tmp_path / "out"
     assert run(scaled, "--out", out, "--texel-density", 20, "--texture-size", 512, *preset, "--no-pictures") == 0
@@ -230,7 +234,8 @@ def test_a_texel_density_that_the_square_cannot_hold_is_a_warning_or_takes_tiles
     assert "triangles" not in line["message"]  # those of both objects together, which nobody could find
 
 
-@pytest.mark.parametrize("preset", [*one_blender([]), ["--preset", "bake"]])
+@pytest.mark.one_blender
+@pytest.mark.parametrize("preset", [*nightly([]), ["--preset", "bake"]])
 def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     out = tmp_path / "out"
     how = [*preset, "--udim", 2, "--margin", 8, "--texture-size", 512, "--overlaps", "split"]
@@ -249,9 +254,10 @@ def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     assert max(densities) / min(densities) < 1.001
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize(
     "how",
-    [*one_blender(["--preset", "paint"], ["--preset", "bake", "--texel-density", 20]), ["--texel-density", 20]],
+    [["--preset", "paint"], *nightly(["--preset", "bake", "--texel-density", 20]), ["--texel-density", 20]],
     ids=["filled", "preset at a density", "density"],
 )
 def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, how):
@@ -280,6 +286,7 @@ def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
     assert line["code"] == "WRONG_USAGE" and "is for lsgp batch" in line["message"]
 
 
+@pytest.mark.one_blender
 def test_tiles_are_shared_by_all_objects(scaled, tmp_path):
     out = tmp_path / "out"
     # 6 faces of 120 and 12 of 240 texels a side: however they are joined, one tile of 1024 does not hold them.
@@ -307,6 +314,7 @@ def test_wrong_usage(tmp_path):
     assert run("--help") == 0
 
 
+@pytest.mark.one_blender
 def test_presets_take_the_subdivision_surface_as_the_operator_does(tmp_path):
     cage = add_cone_cube("Cage", cuts=1)
     for vertex in cage.data.vertices:

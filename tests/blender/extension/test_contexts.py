@@ -161,6 +161,7 @@ def test_an_operator_runs_or_says_why_not(operator: str, context: str, printed: 
     require_a_word(operator, "EXEC_DEFAULT", printed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["EXEC_DEFAULT", "INVOKE_DEFAULT"])
 @pytest.mark.parametrize("area", [None, "VIEW_3D", "IMAGE_EDITOR", "OUTLINER", "TEXT_EDITOR"])
 @pytest.mark.parametrize("operator", OPERATORS)

@@ -10,6 +10,8 @@ import pytest
 sys.path.append(str(Path(__file__).resolve().parents[2]))
 from code_blocks import ROOT, blocks_of, documents
 
+pytestmark = pytest.mark.slow
+
 BLOCKS = [
     pytest.param(document, block, id=f"{document.relative_to(ROOT).as_posix()}:{block.line}")
     for document in documents()
@@ -22,6 +24,7 @@ def test_there_are_such_blocks():
     assert BLOCKS
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("document, block", BLOCKS)
 def test_script_runs(document, block):
     try:

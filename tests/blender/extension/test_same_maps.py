@@ -13,6 +13,8 @@ import pytest
 from lsgp.cli import main
 from scenes import UvMap, add_ball, add_cube, add_grid, add_ramp, add_sphere, add_tube, joined
 
+pytestmark = pytest.mark.slow
+
 # Of sides in a map of area 1: UVs are rounded to single precision.
 TOLERANCE = 2e-6
 MESHES = {
@@ -67,6 +69,7 @@ def command_line_map(obj: bpy.types.Object, preset: str, folder: Path) -> np.nda
     return np.array(uv)[loops]
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("preset", ["PAINT", "TILE", "BAKE"])
 @pytest.mark.parametrize("name", MESHES)
 def test_blender_and_the_command_line(name: str, preset: str, tmp_path: Path) -> None:

@@ -170,6 +170,7 @@ def test_what_progress_raises_is_raised():
         solving.solve_all([Work("a", 1), Work("b", 1)], lambda task, progress: progress(0.5), fail)
 
 
+@pytest.mark.one_blender
 def test_maps_of_several_objects_are_the_same_for_any_number(preferences):
     objects = [add_ball(), add_cone_cube(), add_ball()]
     for obj in objects:

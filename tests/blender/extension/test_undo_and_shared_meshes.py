@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+from nightly import EVERYTHING
 from operator_runs import (
     IN_EDIT_MODE,
     IN_OBJECT_MODE,
@@ -15,6 +16,11 @@ from operator_runs import (
     unwrapped_ball,
 )
 from scenes import UvMap, changed, edit, select_elements, snapshot
+
+pytestmark = pytest.mark.slow
+
+# That nothing drifts is seen after a few.
+TIMES = 10 if EVERYTHING else 3
 
 
 def require_undone_and_redone(names: list[str], run: Run, times: int = 2) -> None:
@@ -49,14 +55,14 @@ def test_every_operator_is_here() -> None:
 
 @pytest.mark.parametrize("operator", IN_OBJECT_MODE)
 def test_operators_are_undone_and_redone_in_object_mode(operator: str) -> None:
-    require_undone_and_redone([unwrapped_ball().name], IN_OBJECT_MODE[operator], times=10)
+    require_undone_and_redone([unwrapped_ball().name], IN_OBJECT_MODE[operator], times=TIMES)
 
 
 @pytest.mark.parametrize("operator", IN_EDIT_MODE)
 def test_operators_are_undone_and_redone_in_edit_mode(operator: str) -> None:
     ball = unwrapped_ball()
     edit_some(ball)
-    require_undone_and_redone([ball.name], IN_EDIT_MODE[operator], times=10)
+    require_undone_and_redone([ball.name], IN_EDIT_MODE[operator], times=TIMES)
 
 
 def linked(obj: bpy.types.Object, name: str = "Twin") -> bpy.types.Object:

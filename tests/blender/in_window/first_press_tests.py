@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The first session with Auto Unwrap, by mouse and keyboard: unwrap, change the preset, paint over a cut.
 
-Run by run_in_window.py; no pytest.
+Run by run_in_window.py, not by pytest.
 """
 
 import bpy
 import numpy as np
+import pytest
 from first_press_models import default_cube, scan, suzanne
 from mathutils import Vector
 from scenes import UvMap, add_texture, covered_twice
@@ -141,9 +142,11 @@ def test_the_default_cube():
     yield from session(default_cube)
 
 
+@pytest.mark.nightly
 def test_suzanne():
     yield from session(suzanne)
 
 
+@pytest.mark.nightly
 def test_an_imported_scan():
     yield from session(scan)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Undo and redo bring every attribute of a mesh back exactly.  Run by run_in_window.py; no pytest."""
+"""Undo and redo bring every attribute of a mesh back exactly.  Run by run_in_window.py, not by pytest."""
 
 from functools import partial
 
 import bpy
+import pytest
 from installed import addon
 from scenes import add_ball, add_cone_cube, add_grid, add_ramp, add_sphere, add_tube, changed, edit, mark, snapshot
 
@@ -87,18 +88,22 @@ def test_ten_unwraps_of_a_cube_are_undone_and_redone_exactly():
     yield from ten_rounds(add_cone_cube)
 
 
+@pytest.mark.nightly
 def test_ten_unwraps_of_a_ball_are_undone_and_redone_exactly():
     yield from ten_rounds(add_ball)
 
 
+@pytest.mark.nightly
 def test_ten_unwraps_of_a_sphere_are_undone_and_redone_exactly():
     yield from ten_rounds(add_marked_sphere)
 
 
+@pytest.mark.nightly
 def test_ten_unwraps_of_a_tube_are_undone_and_redone_exactly():
     yield from ten_rounds(add_marked_tube)
 
 
+@pytest.mark.nightly
 def test_ten_unwraps_of_a_ramp_are_undone_and_redone_exactly():
     yield from ten_rounds(add_ramp)
 

@@ -12,6 +12,8 @@ sys.path.append(str(Path(__file__).resolve().parents[3] / "tools" / "pictures"))
 import demo_picture
 import demo_scene
 
+pytestmark = pytest.mark.slow
+
 PICTURE = Path(__file__).resolve().parents[3] / "docs" / "images" / "suzanne.png"
 
 DRAWN_BY = (4, 5)  # the Blender that tools/demo takes
@@ -52,6 +54,7 @@ def grown(mask: np.ndarray, by: int) -> np.ndarray:
 
 
 @pytest.mark.one_blender
+@pytest.mark.all_tries
 def test_cuts_of_the_layout_are_where_the_readme_shows_them():
     import lsgp
 

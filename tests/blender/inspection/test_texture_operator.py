@@ -154,6 +154,7 @@ def turned_or_mirrored(tile):
         yield turns, True, turned[:, ::-1]
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("tiles", [1, 3, 8])
 def test_an_asymmetric_tile_looks_different_however_it_is_turned_or_mirrored(tiles):
     picture = tile_pictures.picture("ASYMMETRIC", tiles)

@@ -5,7 +5,10 @@ import bpy
 import first_press_models
 import numpy as np
 import pytest
+from nightly import nightly
 from one_blender import one_blender
+
+pytestmark = pytest.mark.slow
 
 
 def half_man():
@@ -78,7 +81,14 @@ MODELS = {
     "scaled objects": scaled,
 }
 # In every Blender: what Mirror and Subdivision Surface make.
-PARAMETERS = ["half man", "cages", *one_blender(*(name for name in MODELS if name not in ("half man", "cages")))]
+SAMPLE = [("half man", "PAINT"), ("cages", "PAINT")]
+SAMPLE_IN_ONE = [("kit", "PAINT"), ("screw", "BAKE"), ("scaled objects", "BAKE")]
+CASES = [(name, preset) for name in MODELS for preset in ("PAINT", "BAKE")]
+PARAMETERS = [
+    *SAMPLE,
+    *one_blender(*SAMPLE_IN_ONE),
+    *nightly(*(case for case in CASES if case not in (*SAMPLE, *SAMPLE_IN_ONE))),
+]
 
 
 def part_of_vertices(mesh):
@@ -114,8 +124,7 @@ def densities(obj):
     return np.sqrt(uv_area[area > 0] / area[area > 0])
 
 
-@pytest.mark.parametrize("preset", ["PAINT", *one_blender("BAKE")])
-@pytest.mark.parametrize("name", PARAMETERS)
+@pytest.mark.parametrize(("name", "preset"), PARAMETERS)
 def test_all_parts_have_one_density(name, preset):
     bpy.ops.object.select_all(action="DESELECT")
     objects = MODELS[name]()

@@ -222,6 +222,7 @@ def test_tiles_are_as_many_as_asked_for(reports):
     assert "12 tiles across" in reports()
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize(("stack", "islands"), [("NONE", 3), ("SAME", 2), ("MIRRORED", 1)])
 def test_islands_of_one_shape_lie_on_each_other(stack, islands, reports):
     places = np.array([[0, 0, 0], [2, 0, 0], [1.5, 1, 0], [0.2, 2, 0]])
@@ -389,6 +390,7 @@ def test_an_island_that_is_alone_is_as_large_as_it_can_be():
     assert area == pytest.approx(area_of(uv_map) * ((1 - 32 / 1024) / box) ** 2, rel=5e-3)
 
 
+@pytest.mark.all_tries
 def test_an_island_that_is_alone_is_turned_on_its_image():
     grid = add_grid()
     for vertex in grid.data.vertices:

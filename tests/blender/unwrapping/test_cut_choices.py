@@ -89,7 +89,7 @@ def length_of_cuts(obj: bpy.types.Object) -> tuple[float, float]:
     return float(length.sum()), float((length * np.maximum(facing, 0)).sum())
 
 
-@pytest.mark.one_blender
+@pytest.mark.nightly
 def test_a_press_keeps_the_face_of_a_head_free_of_cuts() -> None:
     """A fifth of what the shortest cuts show, and no more of them: of cuts found among coarse cells of faces to undo
     overlaps, it is half, and an eighth more."""

@@ -6,14 +6,32 @@ import numpy as np
 import pytest
 from first_press_models import MODELS, kit, scan, screw, suzanne, text
 from installed import addon
-from one_blender import one_blender
 from scenes import UvMap, covered_twice
+
+pytestmark = pytest.mark.slow
 
 cuts = addon.jobs.tasks.cuts
 Faces, Groups = addon.mesh.region_read.Faces, addon.mesh.region_read.Groups
 # In every Blender: primitives, modifiers that stay on the object or were applied, materials and shared meshes.
 LARGE = (suzanne, text, screw, scan, kit)
-PARAMETERS = [*(model for model in MODELS if model not in LARGE), *one_blender(*LARGE)]
+PRESETS = ("PAINT", "BAKE", "TILE")
+
+
+def cases(*presets):
+    """Models with presets: each with one of PRESETS at every change."""
+    return [
+        pytest.param(
+            model,
+            preset,
+            id=f"{preset}-{model.__name__}",
+            marks=[
+                *([] if preset == PRESETS[number % len(PRESETS)] else [pytest.mark.nightly]),
+                *([pytest.mark.one_blender] if model in LARGE or preset == "BAKE" else []),
+            ],
+        )
+        for preset in presets
+        for number, model in enumerate(MODELS)
+    ]
 
 
 def unwrapped(model, preset, reports):
@@ -47,8 +65,7 @@ def creases_of(obj):
     return {tuple(sorted(edge)) for edge in region.mesh_edges.tolist() if tuple(sorted(region.stitched[edge])) in found}
 
 
-@pytest.mark.parametrize("model", PARAMETERS, ids=lambda model: model.__name__)
-@pytest.mark.parametrize("preset", ["PAINT", *one_blender("BAKE")])
+@pytest.mark.parametrize(("model", "preset"), cases("PAINT", "BAKE"))
 def test_densities_are_alike_nothing_overlaps_and_one_line_is_said(model, preset, reports):
     objects, maps, said = unwrapped(model, preset, reports)
     # Of objects that share a mesh the first decides, whose scale is 1.
@@ -65,9 +82,9 @@ def test_densities_are_alike_nothing_overlaps_and_one_line_is_said(model, preset
     assert len(said.strip().splitlines()) == 1 and said.startswith("Info: ")
 
 
-@pytest.mark.parametrize("model", PARAMETERS, ids=lambda model: model.__name__)
-def test_tiles_meet_nothing_is_flipped_and_one_line_is_said(model, reports):
-    objects, maps, said = unwrapped(model, "TILE", reports)
+@pytest.mark.parametrize(("model", "preset"), cases("TILE"))
+def test_tiles_meet_nothing_is_flipped_and_one_line_is_said(model, preset, reports):
+    objects, maps, said = unwrapped(model, preset, reports)
     for obj in objects:
         uv_map = maps[obj.data]
         assert uv_map.flipped() == set()

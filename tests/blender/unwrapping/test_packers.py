@@ -8,6 +8,8 @@ from installed import addon
 from one_blender import one_blender
 from scenes import UvMap, add_cone_cube, add_cube, add_grid, add_texture, covered_twice, pin
 
+pytestmark = pytest.mark.slow
+
 lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.packing, addon.jobs.layouts.blender_packer
 TEXELS = 512
 # There is no xatlas for some Pythons.

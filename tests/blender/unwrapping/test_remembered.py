@@ -37,6 +37,7 @@ def uv_after(**options):
     return UvMap(bpy.context.object).uv
 
 
+@pytest.mark.one_blender
 def test_margins_and_presets_chosen_again_make_no_map(made):
     ball = add_ball()
     ball.vertex_groups.clear()
@@ -130,6 +131,7 @@ def test_edits_in_edit_mode_count(made):
     assert made() == 2
 
 
+@pytest.mark.one_blender
 def test_objects_alike_share_a_map_and_little_is_kept(made, monkeypatch):
     for name in "ABC":
         add_cube(name, cuts=1).location.x = 3.0 * ord(name)

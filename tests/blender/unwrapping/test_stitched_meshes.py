@@ -74,6 +74,7 @@ def ball(request):
     return obj
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("preset", ["PAINT", "TILE", "BAKE"])
 @pytest.mark.parametrize("in_edit_mode", [False, True])
 def test_a_split_ball_becomes_one_island(ball, preset, in_edit_mode):
