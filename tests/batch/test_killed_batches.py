@@ -25,10 +25,10 @@ import pytest
 from batch_meshes import obj_text, off_text
 from dask_cluster import Cluster
 from meshes import Mesh, bumpy_sphere, moebius_strip, renumber
+from nightly import EVERYTHING
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are found by way of Linux")
 
-EVERYTHING = os.environ.get("LSGP_FULL_SWEEP") == "1"
 TRIALS = range(50 if EVERYTHING else 2)
 MOST_KILLS = 3 if EVERYTHING else 1
 COUNT = 16

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from map_checks import only, surface
 from meshes import Mesh
+from nightly import nightly
 from result_check import undeclared_faults
 
 if sys.platform != "linux":
@@ -230,7 +231,7 @@ def test_parts_far_from_each_other_are_no_far_vertices(distance: float) -> None:
 
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer reserves terabytes")
 class TestMemory:
-    @pytest.mark.parametrize("percent", [10, 25, 40, 50, 60, 75, 90])
+    @pytest.mark.parametrize("percent", [25, 60, *nightly(10, 40, 50, 75, 90)])
     @pytest.mark.parametrize(
         "call",
         [

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from map_checks import digest, surface
 from meshes import Mesh
+from nightly import some_nightly
 from zoo import closed
 
 PI = np.pi
@@ -206,7 +207,7 @@ LONG = {
 }
 
 
-@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("name", some_nightly(LONG, "place many"))
 def test_long_work_is_told_of_often_and_stops_at_once(name: str) -> None:
     least, run = LONG[name]
     told: list[float] = []

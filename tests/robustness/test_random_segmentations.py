@@ -6,20 +6,18 @@ A selection runs at every change; LSGP_FULL_SWEEP=1 runs all seeds on all genera
 
 from __future__ import annotations
 
-import os
-
 import lsgp
 import meshes
 import numpy as np
 import pytest
 from map_checks import codes, only, pairs, surface
 from meshes import Mesh
+from nightly import EVERYTHING
 from numpy.typing import NDArray
 from result_check import undeclared_faults
 from segmentations import glue, pieces_of, random_segmentation
 from shared_meshes import shared_mesh
 
-EVERYTHING = os.environ.get("LSGP_FULL_SWEEP") == "1"
 MODES = ("follow", "boundary")
 GENERATED = {
     "cube": meshes.cube(6),

@@ -9,7 +9,6 @@ so and prints a table:
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ import lsgp
 import numpy as np
 import pytest
 from meshes import Mesh
+from nightly import EVERYTHING
 from result_check import named_by, undeclared_faults
 from shared_meshes import shared_cones, shared_folder, shared_mesh
 
@@ -91,8 +91,7 @@ def attempt(name: str, tiles: float, **wanted: object) -> Outcome:
 
 
 def selected() -> list[tuple[str, float]]:
-    everything = os.environ.get("LSGP_FULL_SWEEP") == "1"
-    return [(name, tiles) for name in SELECTED for tiles in (TILES if everything else SELECTED[name])]
+    return [(name, tiles) for name in SELECTED for tiles in (TILES if EVERYTHING else SELECTED[name])]
 
 
 @pytest.mark.parametrize(("name", "tiles"), selected())

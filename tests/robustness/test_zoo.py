@@ -9,6 +9,7 @@ import oracle
 import pytest
 import zoo
 from map_checks import digest
+from nightly import some_nightly
 from outcome_check import error_faults, placement_faults, result_faults
 
 SMALL = {one.name: one for one in zoo.members("small")}
@@ -44,7 +45,7 @@ def test_an_ordinary_mesh_has_a_map(name: str) -> None:
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", LARGEST)
+@pytest.mark.parametrize("name", some_nightly(LARGEST, "gear-teeth=80-depth=0.1-layers=10"))
 def test_a_large_mesh_has_a_map(name: str) -> None:
     require_sound(zoo.member(name))
 

@@ -12,6 +12,7 @@ import oracle
 import pytest
 from map_checks import assert_curvature_adds_up, codes, inner_vertices, only, surface
 from meshes import Mesh
+from nightly import nightly
 from placement_checks import (
     SHARE,
     TURN,
@@ -199,7 +200,7 @@ def test_a_target_out_of_reach_is_told() -> None:
         (5, 4, {}),
         (5, 4, {"lattice": "square"}),
         (10, 5, {}),
-        pytest.param(20, 10, {}, marks=pytest.mark.many_solves),
+        *nightly((20, 10, {}), marks=[pytest.mark.many_solves]),
     ],
 )
 def test_the_number_of_cones_follows_the_genus(across: int, along: int, options: dict[str, str]) -> None:

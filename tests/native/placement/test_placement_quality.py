@@ -10,6 +10,7 @@ import pytest
 from extremities import body_with_limbs, distances_to_cones, extremities, largest_component, with_cones_at
 from map_checks import surface
 from meshes import Mesh
+from nightly import nightly, some_nightly
 from placement_checks import place
 from sanitized_run import many_solves
 from shared_meshes import shared_mesh
@@ -53,7 +54,7 @@ def unwrapped(mesh: Mesh, placed: lsgp.Placement, **options: object) -> lsgp.Res
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", FEWEST)
+@pytest.mark.parametrize("name", some_nightly(FEWEST, "julius", "igea-16k"))
 def test_few_cones_reach_the_target_and_the_map_keeps_it(name: str) -> None:
     mesh = shared_mesh(name)
     placed = place(mesh)
@@ -64,7 +65,7 @@ def test_few_cones_reach_the_target_and_the_map_keeps_it(name: str) -> None:
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", AT_COUNT)
+@pytest.mark.parametrize("name", some_nightly(AT_COUNT, "igea-16k", "max-planck-25k"))
 def test_stretch_at_a_count(name: str) -> None:
     mesh = shared_mesh(name)
     count, most = AT_COUNT[name]
@@ -74,7 +75,7 @@ def test_stretch_at_a_count(name: str) -> None:
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize("name", some_nightly(CLOSED, "igea-16k", "max-planck-25k", "elephant-genus3"))
 def test_as_good_as_other_cones_of_the_same_number(name: str) -> None:
     mesh = shared_mesh(name)
     other = lsgp.parameterize(surface(mesh), mesh.cones).distortion.l2_stretch
@@ -94,7 +95,7 @@ def test_limbs_get_cones_at_their_tips(count: int, length: float, sharpness: flo
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", ["hand-5k", "bird", "igea-16k", "suzanne-messy"])
+@pytest.mark.parametrize("name", ["hand-5k", "bird", *nightly("igea-16k"), "suzanne-messy"])
 def test_cones_are_as_near_to_extremities_as_serves(name: str) -> None:
     """Within two or three edges of each; at the extremities themselves they would stretch no less."""
     mesh = largest_component(shared_mesh(name))
@@ -116,7 +117,7 @@ def test_rounded_angles_and_places_are_chosen_together() -> None:
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("name", ["suzanne-messy", "camel-head-disk", "teapot-messy", "julius", "rabbit"])
+@pytest.mark.parametrize("name", ["suzanne-messy", "camel-head-disk", "teapot-messy", "rabbit", *nightly("julius")])
 def test_an_artist_gets_a_usable_map_without_any_choice(name: str) -> None:
     """From the file to the map: automatic cones, default options."""
     mesh = shared_mesh(name)

@@ -11,6 +11,7 @@ import zoo
 from hulls import hull
 from map_checks import codes, only, surface
 from meshes import Mesh
+from nightly import nightly
 from placement_checks import place
 from sanitized_run import many_solves
 from shared_meshes import hard_mesh
@@ -296,6 +297,7 @@ def rough_ground(cells: int, height: float) -> Mesh:
     return flat._replace(positions=flat.positions + np.outer(height * noise, [0, 0, 1]))
 
 
+@pytest.mark.nightly
 def test_large_ground_that_is_rough_all_over_is_refused_without_repairs() -> None:
     mesh = rough_ground(105, 4)
     with pytest.raises(lsgp.LsgpError, match="too rough") as refused:
@@ -374,7 +376,7 @@ def test_vertices_around_a_hub_are_all_room() -> None:
 # --- as few as will do ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["joint", "spool", pytest.param("couplingdown", marks=pytest.mark.many_solves)])
+@pytest.mark.parametrize("name", ["joint", "spool", *nightly("couplingdown", marks=[pytest.mark.many_solves])])
 def test_half_as_many_cones_would_not_reach_the_target(name: str) -> None:
     mesh = hard_mesh(name)
     placed = place(mesh)
@@ -385,6 +387,7 @@ def test_half_as_many_cones_would_not_reach_the_target(name: str) -> None:
 # --- more than an artist would mark ---------------------------------------------------------------------------------
 
 
+@pytest.mark.nightly
 @pytest.mark.many_solves
 def test_a_large_gear_gets_a_cone_at_each_of_its_corners() -> None:
     """320 corners, which fewer cones do not make up for."""

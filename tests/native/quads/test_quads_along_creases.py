@@ -16,6 +16,7 @@ from hulls import hull
 from lsgp.quads.divided_triangles import divide_long_edges
 from map_checks import codes, surface
 from meshes import Mesh
+from nightly import nightly
 from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
 from sanitized_run import many_solves
@@ -148,7 +149,7 @@ def remesh_of_bevels(width: float, every: int, target: int, seed: int) -> tuple[
 
 @pytest.mark.many_solves
 @pytest.mark.parametrize(
-    ("widths", "targets", "least"), [((0.05, 0.1, 0.15), (1000, 4000), 0.88), ((0.2, 0.25), (4000,), 0.95)]
+    ("widths", "targets", "least"), [*nightly(((0.05, 0.1, 0.15), (1000, 4000), 0.88)), ((0.2, 0.25), (4000,), 0.95)]
 )
 def test_corners_of_bevels_are_vertices_of_quads(
     widths: tuple[float, ...], targets: tuple[int, ...], least: float
@@ -186,6 +187,7 @@ def test_a_surface_that_is_fine_or_soft_is_not_divided() -> None:
         assert lsgp.remesh_to_quads(given, target=200).surface == given
 
 
+@pytest.mark.nightly
 def test_cones_that_cost_much_by_themselves_are_placed_where_creases_gain_by_them() -> None:
     mesh = shared_mesh("fandisk")
     remesh = lsgp.remesh_to_quads(surface(mesh), target=500)

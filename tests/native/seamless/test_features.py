@@ -211,6 +211,7 @@ def test_marked_parts_do_not_end_at_creases(marked: str) -> None:
 SOFT = [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1), closed.noise_sphere(3, 0.04, 1)]
 
 
+@pytest.mark.nightly
 @pytest.mark.many_solves
 def test_creases_are_followed_as_far_as_marked_ones() -> None:
     """On a part with bevels, through cones for creases, which cost stretch as the creases do through others."""

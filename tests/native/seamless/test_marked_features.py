@@ -13,6 +13,7 @@ import oracle
 import pytest
 from map_checks import codes, only, surface
 from meshes import Mesh
+from nightly import nightly
 from numpy.typing import NDArray
 from result_check import undeclared_faults
 from sanitized_run import many_solves
@@ -121,7 +122,7 @@ def test_rims_of_a_cone_run_along_the_lattice() -> None:
 
 @pytest.mark.parametrize(
     "teeth, depth",
-    [(5, 0.4), *many_solves((7, 0.25), (10, 0.15), (12, 0.2))],
+    [(5, 0.4), *many_solves((7, 0.25)), *nightly((10, 0.15), (12, 0.2), marks=[pytest.mark.many_solves])],
 )
 def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
     """Few of them fold the layout, and are released where they do."""
@@ -136,7 +137,7 @@ def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: f
     assert undeclared_faults(wheel, result, PLAIN) == []
 
 
-@pytest.mark.parametrize("teeth, depth", [(7, 0.4), *many_solves((9, 0.4))])
+@pytest.mark.parametrize("teeth, depth", [(6, 0.4), *nightly((7, 0.4), (9, 0.4), marks=[pytest.mark.many_solves])])
 def test_parts_end_at_creases_where_marked_features_gain_by_that(teeth: int, depth: float) -> None:
     mesh = closed.toothed_wheel(teeth, depth)
     edges = lsgp.feature_edges(surface(mesh), angle=0.7)

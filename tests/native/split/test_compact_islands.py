@@ -15,6 +15,7 @@ import pytest
 import zoo
 from map_checks import pairs
 from meshes import Mesh
+from nightly import nightly
 from result_check import undeclared_faults
 from sanitized_run import many_solves
 from scipy.spatial import ConvexHull
@@ -115,7 +116,7 @@ def test_sparing_leaves_no_strip_much_longer_than_the_square() -> None:
         assert longest < 1.5 * np.sqrt(uv_area(sparing) / FILL)
 
 
-@pytest.mark.parametrize("spikes", [6, *many_solves(8, 10, 16)])
+@pytest.mark.parametrize("spikes", [6, *nightly(8, 10, 16, marks=[pytest.mark.many_solves])])
 def test_no_piece_has_a_texel_density_of_its_own(spikes: int) -> None:
     """Tips of spikes, which are stretched most, are not cut off, though that would fill the square better."""
     mesh = closed.spiked_sphere(2, spikes, 10)

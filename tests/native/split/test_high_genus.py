@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from lsgp.presets.auto_unwrap import Preset
 from map_checks import surface
-from sanitized_run import many_solves
+from nightly import some_nightly
 
 # Gauss-Bonnet asks for eight cones for each handle, of which 2,048 may be placed.
 TOO_MANY = 17
@@ -51,7 +51,8 @@ def test_surfaces_that_take_too_many_cones_end_at_all_their_creases() -> None:
     assert len(borders) >= 2 * 4 * TINY_FACES**2
 
 
-@pytest.mark.parametrize("preset", many_solves(*get_args(Preset)))
+@pytest.mark.many_solves
+@pytest.mark.parametrize("preset", some_nightly(get_args(Preset), "paint", "bake"))
 def test_every_preset_unwraps_hundreds_of_handles(preset: Preset) -> None:
     result = lsgp.auto_unwrap(surface(meshes.perforated_slab(TOO_MANY)), preset=preset, pack="shelves")
     assert_usable(result)
@@ -63,6 +64,7 @@ def test_layouts_whose_rounding_would_take_too_much_are_refused() -> None:
         lsgp.remesh_to_quads(surface(meshes.perforated_slab(10)))
 
 
+@pytest.mark.nightly
 @pytest.mark.many_solves
 def test_where_no_cones_are_found_a_map_ends_at_creases() -> None:
     assert_usable(lsgp.auto_unwrap(star_prism(1000), preset="tile"))
