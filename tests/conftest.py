@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
+import lsgp
 import pytest
 from nightly import leave_out_nightly
 
@@ -51,8 +52,8 @@ def exact_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
 
 @pytest.fixture
 def few_tries(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tight layouts are looked for in few ways, for tests of what is so after any number of them."""
-    monkeypatch.setattr("lsgp.layouts.layout_search._TRIES", (4, 4))
+    """Tight layouts are looked for with little effort, for tests of what is so after any."""
+    monkeypatch.setitem(lsgp.pack_islands.__kwdefaults__, "effort", "quick")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

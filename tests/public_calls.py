@@ -150,7 +150,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.pack_islands,
         {
             **{"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "margin": 0.01, "fill": True},
-            **{"turned": True, "udim": 1, "progress": None},
+            **{"turned": True, "udim": 1, "effort": "quick", "seconds": None, "area": None, "groups": None},
+            **{"locks": {"rotation": [0]}, "snap": None, "progress": None},
         },
     ),
     "find_stacks": (
@@ -205,8 +206,6 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "certificate.certificate": (certificate.certificate, {"report": RESULT.seamless, "texture_size": 1024}),
     "certificate.certificate_table": (certificate.certificate_table, {"report": RESULT.seamless, "texture_size": 1024}),
 }
-if lsgp.packer_name() is None:
-    del FUNCTIONS["pack_islands"]  # it is refused whatever is passed
 # What these refuse is in tests/cli and tests/native/io.
 FILES = {"read_mesh_file", "write_mesh_file", "write_png", "MeshFile.surface", "MeshFile.cones", "MeshFile.told"}
 # Errors, and what the library makes for callers to read.

@@ -15,7 +15,6 @@
 #include "arrays.hpp"
 #include "binary_rows.hpp"
 #include "ear_clipping.hpp"
-#include "island_fit.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh_text.hpp"
 #include "polygons.hpp"
@@ -682,6 +681,41 @@ lsgp::GrabbedCut grab(const lsgp::CutRouter& router, const IndexArray& cuts, con
   return without_gil([&] { return router.grab(edges, vertices, kept_off); });
 }
 
+// A dictionary with the fields of lsgp::PackingOptions; locks: which islands keep place, rotation and scale.
+lsgp::PackingOptions to_packing_options(const py::dict& values) {
+  lsgp::PackingOptions options;
+  options.margin = values["margin"].cast<double>();
+  options.fill = values["fill"].cast<bool>();
+  options.turns = choose<lsgp::IslandTurns>(values["turns"].cast<std::string>(), {{"none", lsgp::IslandTurns::none},
+                                                                                  {"quarters", lsgp::IslandTurns::quarters},
+                                                                                  {"any", lsgp::IslandTurns::any}});
+  options.effort = choose<lsgp::PackingEffort>(values["effort"].cast<std::string>(), {{"quick", lsgp::PackingEffort::quick},
+                                                                                      {"good", lsgp::PackingEffort::good},
+                                                                                      {"best", lsgp::PackingEffort::best}});
+  options.seconds = values["seconds"].cast<std::optional<double>>();
+  if (!values["area"].is_none()) {
+    const auto [left, bottom, right, top] = values["area"].cast<std::array<double, 4>>();
+    options.area = lsgp::UvRectangle{left, bottom, right, top};
+  }
+  options.tiles = values["tiles"].cast<int>();
+  options.snap = values["snap"].cast<double>();
+  options.groups = to_vector("groups", values["groups"].cast<IndexArray>());
+  const auto locks = values["locks"].cast<BoolArray>();
+  const View<bool, 2> lock("locks", locks, {any_length, 3});
+  for (py::ssize_t i = 0; i < lock.length(); ++i) options.locks.push_back({lock(i, 0), lock(i, 1), lock(i, 2)});
+  return options;
+}
+
+FloatArray pack_islands(const FloatArray& corner_uv, const IndexArray& island, const py::dict& option_values,
+                        const ProgressCallback& progress) {
+  const std::vector<Index> islands = to_vector("island", island);
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, static_cast<py::ssize_t>(islands.size()));
+  const lsgp::PackingOptions options = to_packing_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::CornerUv packed = without_gil([&] { return lsgp::pack_islands(uv, islands, options, tell); });
+  return to_array(packed.data(), {static_cast<py::ssize_t>(islands.size()), 3, 2});
+}
+
 py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
   const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
   return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
@@ -707,7 +741,6 @@ PYBIND11_MODULE(_lsgp, module) {
   define_binary_rows(module);
   define_ear_clipping(module);
   define_polygons(module);
-  define_island_fit(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface, const lsgp::Solver* earlier) {
@@ -737,6 +770,7 @@ PYBIND11_MODULE(_lsgp, module) {
            "surface"_a)
       .def("grab", &grab, "cuts"_a, "path"_a, "nodes"_a);
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
+  module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);

@@ -30,9 +30,9 @@ else:
         the square is filled by that no Blender changes, and all else is so after any number of tries."""
         if request.config.getoption("few_tries") and not request.node.get_closest_marker("all_tries"):
             from installed import addon
-            from lsgp.layouts import layout_search
+            from lsgp import pack_islands
 
-            monkeypatch.setattr(layout_search, "_TRIES", (4, 4))
+            monkeypatch.setitem(pack_islands.__kwdefaults__, "effort", "quick")
             for name in ("ENOUGH", "ENOUGH_UNTURNED"):
                 monkeypatch.setattr(addon.jobs.layouts.packing, name, 0.0)
 

@@ -197,10 +197,8 @@ def test_arrays_that_no_memory_can_hold(value: float) -> None:
 
 
 TRIANGLE = np.array([[[0, 0], [1, 0], [0, 1.0]]])
-needs_packer = pytest.mark.skipif(lsgp.packer_name() is None, reason="takes the package xatlas")
 
 
-@needs_packer
 @pytest.mark.parametrize("fill", [True, False])
 @pytest.mark.parametrize("size", [2.0**-500, 2.0**-30, 2.0**600, 2.0**1015])
 def test_islands_of_any_size_are_packed_alike(size: float, fill: bool) -> None:
@@ -211,7 +209,6 @@ def test_islands_of_any_size_are_packed_alike(size: float, fill: bool) -> None:
     assert np.array_equal(found, expected if fill else size * expected)
 
 
-@needs_packer
 def test_islands_that_no_square_can_hold_are_refused() -> None:
     island = np.arange(100)
     for uv in (np.full((100, 3, 2), 1e160), np.repeat(TRIANGLE, 100, axis=0) + 1e160):

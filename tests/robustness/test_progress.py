@@ -144,8 +144,7 @@ def test_a_false_of_numpy_stops_as_well() -> None:
         "native": RUNS["torus"],
         "polish": lambda progress: lsgp.remesh_to_quads(surface(CUBE), target=50, polish=True, progress=progress),
     }
-    if lsgp.packer_name() is not None:
-        calls["pack"] = lambda progress: lsgp.pack_islands(result.corner_uv, result.island, progress=progress)
+    calls["pack"] = lambda progress: lsgp.pack_islands(result.corner_uv, result.island, progress=progress)
     for call in calls.values():
         heard: list[float] = []
         call(heard.append)

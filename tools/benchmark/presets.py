@@ -31,8 +31,8 @@ import lsgp
 import numpy as np
 import oracle
 import xatlas
+from island_gaps import border_edges, least_gap
 from lsgp.images.texel_raster import covering_triangles, to_pixels
-from lsgp.layouts.island_gaps import border_edges, least_gap
 from numpy.typing import NDArray
 from overlap_check import overlaps
 from placement_quality import SHARED, read_surface

@@ -32,6 +32,9 @@ which takes a hundredth of the time."""
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
+HARDLY_FILLED, SHORTER_UNALIGNED = 0.3, 0.9
+"""An island along the axes is turned out of them where it fills so little of the square, and that makes the side at
+least so much shorter, as by `lsgp.pack_islands`."""
 KEPT = 8
 """Layouts that are not searched for again."""
 
@@ -183,8 +186,8 @@ def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], ali
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
-    least, rules = side[::quarter].min(), native.part("layouts.layout_search")
-    if aligned > rules.HARDLY_FILLED * least**2 or (aligned and side.min() > rules.SHORTER_UNALIGNED * least):
+    least = side[::quarter].min()
+    if aligned > HARDLY_FILLED * least**2 or (aligned and side.min() > SHORTER_UNALIGNED * least):
         angles, side = angles[::quarter], side[::quarter]
     # As it lies, where turning gains nothing.
     return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])

@@ -12,6 +12,7 @@
 #include "lsgp/export.hpp"
 #include "lsgp/ledger.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/packing.hpp"
 #include "lsgp/placement.hpp"
 #include "lsgp/preview.hpp"
 #include "lsgp/progress.hpp"

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tight packing of islands, by turns and translations, with the packer of xatlas."""
+"""Tight packing of islands, by turns, translations and one scale."""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field, replace
-from importlib.metadata import version
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import _lsgp
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
@@ -22,35 +22,25 @@ from ..base.unit_size import unit_exponent
 from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
-from .chart_packer import Square, find_xatlas
-from .layout_search import LayoutSearch, Turned, islands_of
 from .stacking import find_stacks
 from .texels import TexelLayout, at_texel_density, outside_findings, tile_count
-from .udim_packing import spread_over_tiles
 
 Pack = Literal["tight", "shelves"]
 Stack = Literal["same", "mirrored"]
+Turned = bool | Literal["quarters"]
+"""Whether islands may be turned, or by quarters alone."""
+Effort = Literal["quick", "good", "best"]
+Kept = Literal["place", "rotation", "scale"]
 SHELVES = "shelves"
 
-INSTALL = "pip install 'lsgp[pack]'"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
 
-# Of the time of packing, and of finding stacks and packing those that stay.
-_PREPARING = 0.2
+# Of the time of finding stacks and packing those that stay.
 _STACKING = 0.3
 
-
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """What was found, by digests of what was packed, and how."""
-
-    layouts: dict[tuple[object, ...], FloatArray] = field(default_factory=dict)
-    searches: dict[tuple[object, ...], LayoutSearch] = field(default_factory=dict)
-
-
-# None: nothing is kept.
-_kept: ContextVar[_Kept | None] = ContextVar("kept", default=None)
+# What was packed, by digests of islands and how. None: nothing is kept.
+_kept: ContextVar[dict[tuple[object, ...], FloatArray] | None] = ContextVar("kept", default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +56,11 @@ class LaidOut:
 class Packing:
     """How the islands of a finished map are laid out.
 
-    pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if that
-        is installed and the margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side;
-        None: `DEFAULT_MARGIN` before the layout gets a texel density, which scales it too. udim: over how many UDIM
-        tiles a tight layout is spread, as by `pack_islands`. stack: islands of one shape are stacked, as by
-        `find_stacks`; "mirrored": reflected ones as well; None: none do.
+    pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if the
+        margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side; None: `DEFAULT_MARGIN`
+        before the layout gets a texel density, which scales it too. udim: over how many UDIM tiles a tight layout is
+        spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
+        reflected ones as well; None: none do.
     """
 
     pack: Pack | None = None
@@ -79,11 +69,11 @@ class Packing:
     stack: Stack | None = None
 
     def __post_init__(self) -> None:
-        """Raises InputError: WRONG_PARAMETER, PACKER_NOT_INSTALLED."""
+        """Raises InputError: WRONG_PARAMETER."""
         if self.pack is not None:
             arguments.require_choice("pack", self.pack, get_args(Pack))
         if self.margin is not None:
-            _square(self.margin, fill=True)
+            _margin(self.margin, fill=True)
             if self.pack != "tight" and self.udim is None:
                 arguments.refuse("margin", self.margin, 'pass it with pack="tight", or leave it out')
         if self.udim is not None:
@@ -94,31 +84,23 @@ class Packing:
             arguments.require_choice("stack", self.stack, get_args(Stack))
             if self.pack == SHELVES:
                 arguments.refuse("stack", self.stack, 'pass it with pack="tight", or leave it out')
-        if self.pack == "tight" or self.udim is not None or self.stack is not None:
-            require_packer()
 
     @property
     def is_tight(self) -> bool:
         """Whether a tight layout is attempted."""
-        return self.pack != SHELVES and packer_name() is not None
+        return self.pack != SHELVES
 
 
-def packer_name() -> str | None:
-    """Name and version of the packer of tight layouts, which depend on both; None if it is not installed."""
-    return None if find_xatlas() is None else f"xatlas {version('xatlas')}"
-
-
-def require_packer() -> None:
-    """Raises InputError: PACKER_NOT_INSTALLED."""
-    if find_xatlas() is None:
-        raise InputError("PACKER_NOT_INSTALLED", f"Packing islands takes the package xatlas: {INSTALL}, and try again.")
+def packer_name() -> str:
+    """Who packs tight layouts."""
+    return "lsgp"
 
 
 @contextmanager
 def packing_once() -> Iterator[None]:
-    """Within it, islands that were packed in the same way before are not packed again, and those that were turned by
-    quarters not turned so again: maps are packed to be compared, and the chosen one once more as the result."""
-    token = _kept.set(_Kept())
+    """Within it, islands that were packed in the same way before are not packed again: maps are packed to be compared,
+    and the chosen one once more as the result."""
+    token = _kept.set({})
     try:
         yield
     finally:
@@ -133,83 +115,163 @@ def pack_islands(
     fill: bool = True,
     turned: Turned = True,
     udim: int | None = None,
+    effort: Effort = "good",
+    seconds: float | None = None,
+    area: Sequence[float] | None = None,
+    groups: ArrayLike | None = None,
+    locks: Mapping[Kept, Sequence[int]] | None = None,
+    snap: float | None = None,
     progress: Progress | None = None,
 ) -> FloatArray:
-    """Pack islands tightly, into the smallest square found, and return their coordinates, (m, 3, 2).
+    """Pack islands tightly and return their coordinates, (m, 3, 2).
 
     Every island is moved as a whole: by a turn, a translation, and a common scale, so that texel density is preserved,
-    and both sides of a cut stay related by one rotation and one translation.  Requires the package xatlas: pip install
-    'lsgp[pack]'.
+    and both sides of a cut stay related by one rotation and one translation. Islands are put into bays and holes of
+    others, and never mirrored.
 
     corner_uv: (m, 3, 2). island: (m,), -1 for none; such triangles do not move.
-    margin: around each island, so that the gap between two is twice as wide; at least 0, less than 0.5.
-    fill: the square is the unit square, and the margin is a fraction of its side. Otherwise islands keep their size,
-        the square starts at the origin, and the margin is in the unit of the coordinates.
+    margin: around each island and inside the border, in texture coordinates, so that the gap between two is twice as
+        wide; at least 0. Outlines are measured exactly: it is never less.
+    fill: islands get the common scale with which they fill the area. Otherwise they keep their size.
     turned: whether islands may be rotated; "quarters": only by quarter turns. True: those with most of their border
-        along the axes by quarter turns as well, unless seven tenths of the square stay empty and other turns make its
+        along the axes by quarter turns as well, unless seven tenths of the area stay empty and other turns make its
         side a tenth shorter: long strips lie along the diagonal.
     udim: the most UDIM tiles that islands are spread over, from 1001 on, so that they become as large as possible;
-        fewer are used if the largest island alone fills one. Each island lies inside one tile, with its margin. Only
-        with `fill`.
+        fewer are used if more do not make islands larger. Each island lies inside one tile, with its margin. Only with
+        `fill` and without an area.
+    effort: "quick": the first layout, in a hundredth of a second for a hundred islands; "good": the best of some
+        hundreds; "best": of many more, for minutes. The same effort gives the same layout on every machine.
+    seconds: of "best": how long it goes on. The layout then hangs on the machine.
+    area: (left, bottom, right, top), the rectangle that islands are packed into. None: the unit square; without `fill`
+        and islands that keep their place, the smallest square that begins at the origin.
+    groups: (islands,) numbers of groups, whose islands keep their places relative to each other; -1: alone.
+    locks: the islands that keep their "place", in which others leave them their margin, their "rotation" or their
+        "scale", for instance {"place": [3, 5]}.
+    snap: the side of square blocks in texture coordinates, such as 4 / 1024 for blocks of 4 texels in an image of 1024:
+        each island's box begins at the corner of a block, and no two islands share one.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised.
-    The result depends only on the arguments and the version of the package.
-    Raises InputError: PACKER_NOT_INSTALLED; WRONG_PARAMETER, also if the margins leave no room for the islands.
+    Raises InputError: WRONG_PARAMETER, also where margins leave no room, islands do not fit, or locked ones lie outside
+    the area or overlap; it names them.
     """
+    arguments.require_callable(progress)
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
-    square = _square(margin, arguments.flag("fill", fill))
-    if not isinstance(turned, bool | np.bool_) and not (isinstance(turned, str) and turned == "quarters"):
-        arguments.refuse("turned", turned, 'pass True, False or "quarters"')
-    may_turn: Turned = "quarters" if isinstance(turned, str) else bool(turned)
-    tiles = 1 if udim is None else tile_count(udim)
-    if tiles > 1 and not square.fill:
-        arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")
-    arguments.require_callable(progress)
-    require_packer()
+    count = int(island.max(initial=-1)) + 1
+    options = _options(margin, fill, turned, udim, effort, seconds, area, snap)
+    options["groups"] = np.zeros(0, np.int32) if groups is None else _group_numbers(groups, count)
+    options["locks"] = _lock_flags(locks, count)
     solved = np.flatnonzero(island >= 0)
     lost = solved[~np.isfinite(uv[solved]).all(axis=(1, 2))]
     if len(lost):
         raise InputError(
             "WRONG_PARAMETER",
             f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
+            Elements("triangles", lost.astype(np.int32)),
         )
-    out = uv.copy()
     if not len(solved):
-        return out
-    kept = _kept.get() or _Kept()
-    given = _digest(uv, island)
-    asked = given, square, may_turn, tiles
-    if asked in kept.layouts:
+        return uv.copy()
+    kept = _kept.get()
+    how = (value.tobytes() if isinstance(value, np.ndarray) else value for value in options.values())
+    asked = _digest(uv, island), *how
+    if kept is not None and asked in kept:
         tell(progress, 1.0)
-        return kept.layouts[asked].copy()
-    exponent = unit_exponent(uv[solved], 0.0 if square.fill else square.margin)
-    unit_uv = np.ldexp(uv[solved], -exponent)
-    if tiles > 1:
-        out[solved] = spread_over_tiles(unit_uv, island[solved], square.margin, tiles, may_turn, progress)
-    else:
-        searched = given, square, bool(may_turn)
-        # One that is stopped is not kept.
-        unit_square = square if square.fill else replace(square, margin=math.ldexp(square.margin, -exponent))
-        search = kept.searches.pop(searched, None)
-        if search is None:
-            tell(progress, 0.0)
-            islands = islands_of(unit_uv, island[solved])
-            search = LayoutSearch(islands, unit_square, share_of(progress, 0.0, _PREPARING))
-            progress = share_of(progress, _PREPARING, 1.0)
-        found = search.best(may_turn, progress)
-        kept.searches[searched] = search
-        place = (found.place - found.low) / (found.side if square.fill else 1.0)
-        packed = np.stack([place.real, place.imag], axis=-1)[search.islands.triangles] + unit_square.margin
-        with np.errstate(over="ignore"):
-            out[solved] = packed if square.fill else np.ldexp(packed, exponent)
-        if not np.isfinite(out[solved]).all():
-            raise InputError(
-                "WRONG_PARAMETER",
-                "The square around the packed islands is larger than numbers can hold. Scale corner_uv and the margin "
-                "down.",
-            )
-    kept.layouts[asked] = out.copy()
+        return kept[asked].copy()
+    out = _packed_at_unit_size(uv, island, solved, options, progress)
+    if kept is not None:
+        kept[asked] = out.copy()
     return out
+
+
+def _packed_at_unit_size(
+    uv: FloatArray, island: IndexArray, solved: NDArray[np.int64], options: dict[str, Any], progress: Progress | None
+) -> FloatArray:
+    """uv scaled by a power of two, so that no square of a coordinate overflows or vanishes; no digit hangs on it."""
+    fill = options["fill"]
+    is_bound = options["locks"].any() or (options["area"] is not None and not fill)
+    exponent = 0 if is_bound else unit_exponent(uv[solved], 0.0 if fill else options["margin"])
+    unit_uv = np.zeros_like(uv)
+    unit_uv[solved] = np.ldexp(uv[solved], -exponent)
+    lengths = {} if fill else {name: math.ldexp(options[name], -exponent) for name in ("margin", "snap")}
+    packed = _lsgp.pack_islands(unit_uv, island, {**options, **lengths}, progress)[solved]
+    out = uv.copy()
+    with np.errstate(over="ignore"):
+        out[solved] = packed if fill else np.ldexp(packed, exponent)
+    if not np.isfinite(out[solved]).all():
+        raise InputError(
+            "WRONG_PARAMETER",
+            "The square around the packed islands is larger than numbers can hold. Scale corner_uv and the margin "
+            "down.",
+        )
+    return out
+
+
+def _options(
+    margin: float,
+    fill: bool,
+    turned: Turned,
+    udim: int | None,
+    effort: Effort,
+    seconds: float | None,
+    area: Sequence[float] | None,
+    snap: float | None,
+) -> dict[str, Any]:
+    """Those of the native function but for groups and locks.  Raises InputError."""
+    fills = arguments.flag("fill", fill)
+    if not isinstance(turned, bool | np.bool_) and not (isinstance(turned, str) and turned == "quarters"):
+        arguments.refuse("turned", turned, 'pass True, False or "quarters"')
+    tiles = 1 if udim is None else tile_count(udim)
+    if tiles > 1 and not fills:
+        arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")
+    if tiles > 1 and area is not None:
+        arguments.refuse("udim", udim, "leave it or the area out")
+    arguments.require_choice("effort", effort, get_args(Effort))
+    if seconds is not None:
+        arguments.positive("seconds", seconds)
+        if effort != "best":
+            arguments.refuse("seconds", seconds, 'pass it with effort="best", or leave it out')
+    rectangle = None if area is None else _rectangle(area)
+    width = 1.0 if rectangle is None else min(rectangle[2] - rectangle[0], rectangle[3] - rectangle[1])
+    return {
+        "margin": _margin(margin, fills, width),
+        "fill": fills,
+        "turns": turned if isinstance(turned, str) else "any" if turned else "none",
+        "effort": effort,
+        "seconds": None if seconds is None else float(seconds),
+        "area": rectangle,
+        "tiles": tiles,
+        "snap": 0.0 if snap is None else arguments.positive("snap", snap, "pass the side of a block, above 0"),
+    }
+
+
+def _rectangle(area: Sequence[float]) -> tuple[float, float, float, float]:
+    remedy = "pass (left, bottom, right, top), with some room between them"
+    found = arguments.floats("area", area)
+    if found.shape != (4,) or not np.isfinite(found).all() or not (found[:2] < found[2:]).all():
+        arguments.refuse("area", area, remedy)
+    return tuple(found.tolist())
+
+
+def _group_numbers(groups: ArrayLike, count: int) -> IndexArray:
+    found = arguments.islands("groups", groups)
+    if len(found) < count:
+        raise InputError("WRONG_SHAPE", f"groups has {len(found)} numbers; pass one for each of the {count} islands.")
+    return found[:count]
+
+
+def _lock_flags(locks: Mapping[Kept, Sequence[int]] | None, count: int) -> NDArray[np.bool_]:
+    """(islands, 3): whether each keeps place, rotation and scale."""
+    flags = np.zeros((count, 3), bool)
+    if locks is None:
+        return flags
+    names = get_args(Kept)
+    if not isinstance(locks, Mapping):
+        arguments.refuse("locks", locks, 'pass the islands that keep their "place", "rotation" or "scale"')
+    for name, islands in locks.items():
+        arguments.require_choice("locks", name, names)
+        numbers = arguments.index_vector("locks", islands)
+        arguments.require_indices("locks", numbers, count)
+        flags[numbers, names.index(name)] = True
+    return flags
 
 
 def _digest(uv: FloatArray, island: IndexArray) -> bytes:
@@ -219,12 +281,12 @@ def _digest(uv: FloatArray, island: IndexArray) -> bytes:
     return digest.digest()
 
 
-def _square(margin: float, fill: bool) -> Square:
-    remedy = "pass a margin from 0, less than 0.5"
+def _margin(margin: float, fill: bool, width: float = 1.0) -> float:
+    remedy = "pass a margin from 0, less than half of the area's width"
     found = arguments.number("margin", margin, remedy)
-    if not 0 <= found < (0.5 if fill else math.inf):
+    if not 0 <= found < (width / 2 if fill else math.inf):
         arguments.refuse("margin", margin, remedy if fill else "pass a margin, 0 or more")
-    return Square(found, fill)
+    return found
 
 
 def turns_of(result: Result) -> Turned:

@@ -16,7 +16,7 @@ from ..base.equality import EqualByContent
 from ..base.progress import Progress, tell
 from ..base.short_repr import ShortRepr
 from ..base.unit_size import unit_exponent
-from .layout_search import Islands, islands_of
+from ..triangles import uv_area
 
 Indices = NDArray[np.int64]
 
@@ -100,9 +100,11 @@ class _Shape:
 
     @classmethod
     def of(cls, triangles: Indices, uv: FloatArray) -> _Shape:
-        islands: Islands = islands_of(uv[triangles], np.zeros(len(triangles), np.int32))
-        corners = islands.triangles
-        edges = islands.place[corners] - islands.place[corners[:, [1, 2, 0]]]
+        corner = uv[triangles].reshape(-1, 2) + 0.0  # -0.0 is 0.0
+        vertex, of_corner = np.unique(corner, axis=0, return_inverse=True)
+        corners = of_corner.reshape(-1, 3)
+        place = vertex @ np.array([1, 1j])
+        edges = place[corners] - place[corners[:, [1, 2, 0]]]
         across = {
             (a, b): 3 * k + c
             for c, ends in enumerate((corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]))
@@ -111,8 +113,8 @@ class _Shape:
         return cls(
             triangles=triangles,
             corners=corners.tolist(),
-            place=islands.place.tolist(),
-            size=float(np.sqrt(islands.area)),
+            place=place.tolist(),
+            size=float(np.sqrt(uv_area(uv[triangles]))),
             lengths=np.sort(np.abs(edges).ravel()),
             across=across if len(across) == corners.size else {},
         )

@@ -14,8 +14,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
 from ..errors import InputError
 from ..lattice import island_boxes
-from ..layouts.layout_search import Turned
-from ..layouts.packing import pack_islands, packer_name, turns_of
+from ..layouts.packing import Turned, pack_islands, packer_name, turns_of
 from ..options import Options
 from ..results import Result
 from ..surface import Surface
@@ -338,7 +337,7 @@ def _filled_when_packed(result: Result, progress: Progress | None, turned: Turne
     allowed = turns_of(result)
     may_turn = turned if allowed is True else allowed
     try:
-        packed = pack_islands(result.corner_uv, result.island, turned=may_turn, progress=progress)
+        packed = pack_islands(result.corner_uv, result.island, turned=may_turn, effort="quick", progress=progress)
     except InputError:
         return 0.0
     return uv_area(packed[result.solved])

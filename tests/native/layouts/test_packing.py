@@ -14,10 +14,9 @@ import meshes
 import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
-from lsgp import TexelLayout
+from island_gaps import least_gap
+from lsgp import TexelLayout, _lsgp
 from lsgp.layouts import packing
-from lsgp.layouts.island_gaps import least_gap
-from lsgp.layouts.layout_search import LayoutSearch
 from map_checks import codes, surface
 from other_process import in_another_process
 
@@ -42,17 +41,6 @@ def maps() -> None:
 @pytest.fixture
 def few_tries(maps, few_tries) -> None:
     """For what is packed, while the maps that tests share are those of all tries."""
-
-
-@pytest.fixture
-def packer() -> str:
-    pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
-    return lsgp.packer_name()
-
-
-@pytest.fixture
-def without_packer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "xatlas", None)  # which makes it an ImportError
 
 
 def squares(count: int, side: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
@@ -84,21 +72,21 @@ def quarter_turned(factor: complex) -> bool:
 
 @pytest.mark.parametrize("margin", [0.0, 1 / 4096, 4 / 1024, 16 / 512])
 @pytest.mark.parametrize("preset", ["paint", "bake"])
-def test_islands_keep_their_margin_and_one_scale(packer, few_tries, preset: str, margin: float) -> None:
+def test_islands_keep_their_margin_and_one_scale(few_tries, preset: str, margin: float) -> None:
     given = on_shelves(preset)
     uv = lsgp.pack_islands(given.corner_uv, given.island, margin)
     require_packed(given.corner_uv, uv, given.island, margin, PARTS.triangles)
     assert uv.max() == pytest.approx(1 - margin)  # it fills the square
 
 
-def test_more_is_covered_than_on_shelves(packer) -> None:
+def test_more_is_covered_than_on_shelves() -> None:
     for given in map(on_shelves, PACKED):
         packed = lsgp.pack_islands(given.corner_uv, given.island)
         assert coverage(packed, given.island) > 1.05 * coverage(given.corner_uv, given.island)
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.01, 2.0])
-def test_islands_that_keep_their_size(packer, margin: float) -> None:
+def test_islands_that_keep_their_size(margin: float) -> None:
     given = on_shelves("bake")
     uv = lsgp.pack_islands(given.corner_uv, given.island, margin, fill=False)
     assert np.abs(moves(given.corner_uv, uv, given.island)) == pytest.approx(1.0, rel=1e-6)
@@ -107,7 +95,7 @@ def test_islands_that_keep_their_size(packer, margin: float) -> None:
     assert overlapping_islands(uv, given.island) == 0
 
 
-def test_cuts_match_as_before(packer) -> None:
+def test_cuts_match_as_before() -> None:
     """Within islands each cut has one turn and one translation still, and along all cuts sides are as long."""
     ball = meshes.bumpy_sphere(3)
     both = surface(meshes.merge([ball, ball, meshes.cube(3)]))
@@ -123,14 +111,14 @@ def test_cuts_match_as_before(packer) -> None:
     assert replace(split, corner_uv=on_shelves("bake").corner_uv) == on_shelves("bake")
 
 
-def test_islands_that_may_not_be_turned_are_only_shifted(packer) -> None:
+def test_islands_that_may_not_be_turned_are_only_shifted() -> None:
     given = on_shelves("bake")
     uv = lsgp.pack_islands(given.corner_uv, given.island, turned=False)
     require_packed(given.corner_uv, uv, given.island, 4 / 1024, PARTS.triangles)
     assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
 
 
-def test_a_direction_that_was_asked_for_stays(packer) -> None:
+def test_a_direction_that_was_asked_for_stays() -> None:
     up = replace(PARTS, directions=np.array([0.0, 0.0, 1.0]))
     shelves, tight = (lsgp.auto_unwrap(up, preset="bake", pack=pack) for pack in ("shelves", "tight"))
     assert np.abs(np.angle(moves(shelves.corner_uv, tight.corner_uv, tight.island))).max() < 1e-6
@@ -150,7 +138,7 @@ def digests() -> tuple[str, str]:
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
-def test_another_process_gives_the_same_bytes(packer, threads: str) -> None:
+def test_another_process_gives_the_same_bytes(threads: str) -> None:
     """Whatever the order of hashes and the number of processors."""
     one_processor = "import os; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])\n"
     script = (one_processor if threads == "1" and sys.platform == "linux" else "") + "import test_packing as t\n"
@@ -159,7 +147,7 @@ def test_another_process_gives_the_same_bytes(packer, threads: str) -> None:
 
 
 @pytest.mark.parametrize("count", [1, 2, 100, 700])
-def test_few_and_many_islands(packer, count: int) -> None:
+def test_few_and_many_islands(count: int) -> None:
     uv, island = squares(count)
     margin = 1 / 1024
     packed = lsgp.pack_islands(uv, island, margin)
@@ -175,7 +163,7 @@ def test_few_and_many_islands(packer, count: int) -> None:
 
 @pytest.mark.parametrize("count", [1, 3])
 @pytest.mark.parametrize("length", [1.2, 20.0])
-def test_long_strips_lie_along_the_diagonal(packer, count: int, length: float) -> None:
+def test_long_strips_lie_along_the_diagonal(count: int, length: float) -> None:
     """Those that are hardly longer than wide stay along the axes."""
     uv, island = squares(count)
     packed = lsgp.pack_islands(uv * [length, 1], island)
@@ -188,7 +176,7 @@ def test_long_strips_lie_along_the_diagonal(packer, count: int, length: float) -
         assert coverage(packed, island) > 0.9 * length * count * 0.01 / side**2
 
 
-def test_an_island_that_is_alone_is_turned_until_it_fits_best(packer) -> None:
+def test_an_island_that_is_alone_is_turned_until_it_fits_best() -> None:
     angle = 0.3
     corners = np.array([[0, 0], [3, 0], [3, 3], [0, 3], [1.5, 1.5]]) @ [
         [math.cos(angle), math.sin(angle)],
@@ -204,14 +192,14 @@ def test_an_island_that_is_alone_is_turned_until_it_fits_best(packer) -> None:
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
-def test_an_island_without_a_border_is_packed_like_others(packer, order: list[int]) -> None:
+def test_an_island_without_a_border_is_packed_like_others(order: list[int]) -> None:
     """Two triangles on each other, with the same corners."""
     uv = np.array([[[0, 0], [1, 0], [1, 0.3]], [[1, 0], [0, 0], [1, 0.3]], [[2, 0], [3, 0], [3, 1]]])
     packed = lsgp.pack_islands(uv[order], np.array([0, 0, 1])[order])
     assert overlapping_islands(packed, np.array([0, 0, 1])[order]) == 0
 
 
-def test_an_island_lies_in_the_hole_of_another(packer) -> None:
+def test_an_island_lies_in_the_hole_of_another() -> None:
     angle = np.arange(48) * (2 * math.pi / 48)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     inner, outer = 0.8 * circle, circle
@@ -225,7 +213,7 @@ def test_an_island_lies_in_the_hole_of_another(packer) -> None:
     assert room(np.arange(3 * len(uv)).reshape(-1, 3), packed, island).border >= 4 / 1024 - ROUNDING
 
 
-def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along(packer) -> None:
+def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along() -> None:
     uv, island = squares(4)
     line = [[[9.0, 0.0], [9.1, 0.0], [9.05, 0.0]], [[9.0, 1.0], [9.0, 1.0], [9.0, 1.0]]]
     spike = [[[0.0, 0.0], [0.0, 0.3], [0.0, 0.1]]]  # without area, of the first square, and reaching out of it
@@ -238,7 +226,7 @@ def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along(packer) ->
     assert np.array_equal(lsgp.pack_islands(np.full((2, 3, 2), 5.0), [-1, -1]), np.full((2, 3, 2), 5.0))
 
 
-def test_margins_that_leave_no_room_are_refused(packer) -> None:
+def test_margins_that_leave_no_room_are_refused() -> None:
     uv, island = squares(100)
     with pytest.raises(lsgp.InputError, match="smaller margin") as caught:
         lsgp.pack_islands(uv, island, 0.06)
@@ -251,42 +239,27 @@ def test_margins_that_leave_no_room_are_refused(packer) -> None:
         lsgp.pack_islands(uv, island)
 
 
-@pytest.mark.parametrize("preset", ["paint", "bake"])
-def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPatch, preset: str) -> None:
+def test_nothing_is_packed_twice_while_layouts_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     packed = []
-    best = LayoutSearch.best
+    pack = _lsgp.pack_islands
 
-    def counted(self: LayoutSearch, *how: object) -> object:
-        packed.append(self)
-        return best(self, *how)
+    def counted(*given: object) -> object:
+        packed.append(given)
+        return pack(*given)
 
-    monkeypatch.setattr(LayoutSearch, "best", counted)
-    given = surface(meshes.flower(3))
-    shelves = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
-    compared = len(packed)
-    assert compared >= 2  # with symmetric cones, without, and perhaps divided further
-    result = lsgp.auto_unwrap(given, preset=preset)
-    assert len(packed) == 2 * compared
-    assert (result.corner_uv == lsgp.pack_islands(shelves.corner_uv, shelves.island)).all()
-    assert len(packed) == 2 * compared + 1  # nothing is kept from one call to the next
-
-
-def test_a_search_goes_on_from_quarter_turns_as_if_it_began(packer) -> None:
+    monkeypatch.setattr(_lsgp, "pack_islands", counted)
     given = on_shelves("bake")
     how = given.corner_uv, given.island
     with packing.packing_once():
-        with pytest.raises(lsgp.Cancelled):
-            lsgp.pack_islands(*how, turned="quarters", progress=lambda done: done < 0.2)
-        together = [lsgp.pack_islands(*how, turned=turned) for turned in ("quarters", True, "quarters")]
-        told: list[float] = []
-        lsgp.pack_islands(*how, margin=0.01, turned="quarters")
-        lsgp.pack_islands(*how, margin=0.01, progress=told.append)
-    assert told == sorted(told) and told[0] > 0.5 and told[-1] == 1
-    for turned, packed in zip(("quarters", True, "quarters"), together, strict=True):
-        assert np.array_equal(packed, lsgp.pack_islands(*how, turned=turned), equal_nan=True)
+        first, other, again = (lsgp.pack_islands(*how, turned=turned) for turned in ("quarters", True, "quarters"))
+    assert len(packed) == 2
+    assert np.array_equal(first, again, equal_nan=True)
+    assert not np.array_equal(first, other, equal_nan=True)
+    lsgp.pack_islands(*how)
+    assert len(packed) == 3  # nothing is kept from one call to the next
 
 
-def test_progress_is_told_and_stops_it(packer) -> None:
+def test_progress_is_told_and_stops_it() -> None:
     given = on_shelves("bake")
     told: list[float] = []
     lsgp.pack_islands(given.corner_uv, given.island, progress=told.append)
@@ -298,7 +271,7 @@ def test_progress_is_told_and_stops_it(packer) -> None:
     assert told == sorted(told) and told[-1] == 1
 
 
-def test_presets_are_packed_where_that_is_installed(packer, few_tries) -> None:
+def test_presets_are_packed_where_that_is_installed(few_tries) -> None:
     for preset in PACKED:
         tight = lsgp.auto_unwrap(PARTS, preset=preset, pack="tight")
         assert lsgp.auto_unwrap(PARTS, preset=preset) == tight != on_shelves(preset)
@@ -306,19 +279,7 @@ def test_presets_are_packed_where_that_is_installed(packer, few_tries) -> None:
         assert room(PARTS.triangles, wide.corner_uv, wide.island).between >= 32 / 1024 - ROUNDING
 
 
-def test_without_the_packer_islands_are_on_shelves(without_packer) -> None:
-    assert lsgp.packer_name() is None
-    assert lsgp.auto_unwrap(PARTS, preset="bake") == on_shelves("bake")
-    for call in (
-        lambda: lsgp.auto_unwrap(PARTS, preset="bake", pack="tight"),
-        lambda: lsgp.pack_islands(on_shelves("bake").corner_uv, on_shelves("bake").island),
-    ):
-        with pytest.raises(lsgp.InputError, match=r"pip install 'lsgp\[pack\]'") as caught:
-            call()
-        assert caught.value.code == "PACKER_NOT_INSTALLED"
-
-
-def test_islands_that_may_not_be_moved_stay(packer) -> None:
+def test_islands_that_may_not_be_moved_stay() -> None:
     ball = meshes.bumpy_sphere(2)
     pins = lsgp.Pins([0, 5], [[0, 0], [1, 0]])
     udim = TexelLayout(40.0, 512, udim=20)
@@ -330,7 +291,7 @@ def test_islands_that_may_not_be_moved_stay(packer) -> None:
 
 
 @pytest.mark.parametrize("times", [0.3, 1.0, 3.0])
-def test_a_texel_density_has_the_margin_that_is_asked_for(packer, few_tries, times: float) -> None:
+def test_a_texel_density_has_the_margin_that_is_asked_for(few_tries, times: float) -> None:
     size, given = 512, on_shelves("bake")
     density = times * lsgp.texel_density(PARTS, given.corner_uv, size).mean
     layout = TexelLayout(density, size)
@@ -345,7 +306,7 @@ def test_a_texel_density_has_the_margin_that_is_asked_for(packer, few_tries, tim
     assert ratio == pytest.approx(ratio[0, 0, 0])
 
 
-def test_a_margin_takes_a_tight_layout(packer) -> None:
+def test_a_margin_takes_a_tight_layout() -> None:
     for pack in (None, "shelves"):
         with pytest.raises(lsgp.InputError, match='pack="tight"'):
             lsgp.auto_unwrap(PARTS, pack=pack, margin=0.01)

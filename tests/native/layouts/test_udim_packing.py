@@ -12,10 +12,7 @@ import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room
 from lsgp import TexelLayout
-from lsgp.layouts.chart_packer import Packer
 from map_checks import surface
-
-pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
 
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(2) for _ in range(2)), *(meshes.cube(n) for n in range(1, 4))]))
 ROUNDING = 1e-9
@@ -95,25 +92,6 @@ def test_no_more_tiles_are_taken_than_make_islands_larger(tiles: int) -> None:
     assert scale(uv, packed, island) == pytest.approx((1 - 0.02) / 4, rel=0.02)
     alone = lsgp.pack_islands(*rectangles([(2.0, 1.0)]), 0.01, udim=tiles)
     assert in_tiles(alone, np.zeros(2, int)).keys() == {(0, 0)}
-
-
-def test_islands_of_many_tiles_are_turned_no_more_often_than_those_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """But for those that move between tiles, and for margins of one width in all of them."""
-    turned = []
-    improved = Packer.improved
-
-    def counted(self: Packer, turns: np.ndarray, *others: object) -> object:
-        turned.append(len(turns))
-        return improved(self, turns, *others)
-
-    monkeypatch.setattr(Packer, "improved", counted)
-    sides = np.random.default_rng(0).uniform(0.5, 1.5, (192, 2))
-    counts = []
-    for tiles in (1, 16):
-        turned.clear()
-        lsgp.pack_islands(*rectangles([tuple(both) for both in sides.tolist()]), 0.002, udim=tiles)
-        counts.append(sum(turned))
-    assert counts[1] < 4 * counts[0]
 
 
 def test_tiles_are_in_rows_of_ten() -> None:

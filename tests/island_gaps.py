@@ -10,10 +10,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from lsgp.base.arguments import FloatArray
+from lsgp.base.progress import UNTOLD, Steps
 from numpy.typing import NDArray
-
-from ..base.arguments import FloatArray
-from ..base.progress import UNTOLD, Steps
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]

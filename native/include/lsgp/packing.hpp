@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packing: islands moved, turned and scaled so that they fill a rectangle.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "lsgp/export.hpp"
+#include "lsgp/progress.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+enum class IslandTurns { none, quarters, any };
+
+// How long better layouts are looked for. The same effort gives the same layout on every machine.
+enum class PackingEffort { quick, good, best };
+
+// What an island keeps.
+struct IslandLock {
+  bool place = false;  // all of it
+  bool rotation = false;
+  bool scale = false;
+};
+
+struct UvRectangle {
+  double left = 0, bottom = 0, right = 1, top = 1;
+};
+
+struct PackingOptions {
+  // Around each island, in texture coordinates; the gap between two is twice as wide.
+  double margin = 4.0 / 1024;
+  // Islands get the scale, the same for all, with which they fill the area. Otherwise they keep their size.
+  bool fill = true;
+  IslandTurns turns = IslandTurns::any;
+  PackingEffort effort = PackingEffort::good;
+  // How long `best` goes on, seconds, whatever it has found; none: until its own end, which hangs on islands alone.
+  std::optional<double> seconds;
+  // Where islands are put. None: the unit square; if islands keep their size and none its place, the smallest square
+  // that begins at the origin.
+  std::optional<UvRectangle> area;
+  // Squares, from the unit square on ten in a row as UDIM tiles, that islands are spread over; fewer are used if more
+  // do not make islands larger.
+  int tiles = 1;
+  // The side of square blocks, in texture coordinates: the box of every island has its low corner on the corner of one,
+  // and no block is shared by two islands. 0: none.
+  double snap = 0;
+  // (islands) Islands of one number stay together as they are; -1: alone. Or empty.
+  std::vector<Index> groups;
+  // (islands) Or empty.
+  std::vector<IslandLock> locks;
+};
+
+// The texture coordinates of islands, each moved as a whole by a turn, a translation and a scale, so that they keep
+// their margins.  island: (m) the number of each triangle's island, -1: it does not move. WRONG_PARAMETER, with the
+// triangles of the islands concerned: coordinates that are not finite, margins without room, what does not fit.
+LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island,
+                               const PackingOptions& options = {}, const Progress& progress = {});
+
+}  // namespace lsgp

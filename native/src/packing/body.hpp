@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is packed: islands, each alone or several that stay together, and the ways in which they may be turned.
+#pragma once
+
+#include "base/array.hpp"
+#include "lsgp/packing.hpp"
+#include "packing/footprint.hpp"
+#include "packing/outline.hpp"
+
+namespace lsgp {
+
+struct Body {
+  Array<Index> islands;     // their numbers
+  Complex origin;           // of the outline, in texture coordinates
+  Outline outline;          // around its origin
+  double area = 0;          // of all triangles
+  IslandTurns turns = IslandTurns::any;
+  bool keeps_scale = false;
+  bool keeps_place = false;
+};
+
+// The bodies in the order of their first islands.
+Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options);
+
+// Whether most of an outline is parallel to one of the axes.
+bool lies_along_axes(const Outline& outline);
+
+// The unit vectors that a body may be turned by: for any turns of outlines that do not lie along the axes, the sides of
+// the smallest box and `directions`, a power of two, within each quarter; 0: none of the latter.
+Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes);
+
+// A body turned, and rasterized, its box with the low corner at the origin; in texels.
+struct Pose {
+  Complex turn;     // of length 1
+  Complex shift;    // the outline is that of the body, turned and scaled, plus this
+  Outline outline;
+  double width, height;
+  Footprint footprint;
+};
+// outline: of the body, maybe simplified. scale: texels in its unit. Poses with equal outlines are one.
+Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double scale);
+
+}  // namespace lsgp

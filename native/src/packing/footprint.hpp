@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The texels that an island takes, and the raster in which free places are looked for.
+#pragma once
+
+#include "base/array.hpp"
+#include "packing/bit_rows.hpp"
+#include "packing/outline.hpp"
+
+namespace lsgp {
+
+// Texels of a row, from `begin` up to `end`; 2^level is the greatest power of two that is not more than they are.
+struct Span {
+  int row, begin, end, level;
+};
+
+// The texels that an outline touches, the longest spans first: these rule out most places.
+class Footprint {
+ public:
+  // outline: in texels, its box with the low corner at the origin.
+  explicit Footprint(const Outline& outline);
+
+  const Array<Span>& spans() const { return spans_; }
+
+ private:
+  Array<Span> spans_;
+};
+
+// The texels that are taken and, level by level, whether any of the 1, 2, 4, ... from one on is.
+class TakenTexels {
+ public:
+  TakenTexels(int rows, int columns);
+
+  int rows() const { return levels_[0].rows(); }
+
+  // Takes what lies less than `reach` from an outline, in texels.
+  void take(const Outline& outline, double reach);
+
+  // The first column up to `last` in which a footprint is free in a row, looked for 64 columns at a time as long as
+  // goes_on(column) holds; -1 where there is none.
+  template <typename GoesOn>
+  int first_free(const Footprint& footprint, int row, int last, GoesOn goes_on) const {
+    for (int column = 0; column <= last && goes_on(column); column += BitRows::word_bits) {
+      BitRows::Word taken = 0;
+      for (const Span& span : footprint.spans()) {
+        const BitRows& any = levels_[span.level];
+        taken |= any.from(row + span.row, column + span.begin);
+        taken |= any.from(row + span.row, column + span.end - (1 << span.level));
+        if (taken == BitRows::all_ones) break;
+      }
+      if (taken == BitRows::all_ones) continue;
+      while (taken & 1) {
+        taken >>= 1;
+        ++column;
+      }
+      return column <= last ? column : -1;
+    }
+    return -1;
+  }
+
+ private:
+  Array<BitRows> levels_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "packing/layout_search.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/text.hpp"
+#include "lsgp/errors.hpp"
+#include "packing/gaps.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// What of the area the first layout that is tried fills, and by how much its side grows until one is found.
+constexpr double first_fill = 0.65, growth = 1.02, failed_growth = 1.12;
+constexpr int most_growths = 16;
+// By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
+constexpr double widened = 1e-9;
+// Outlines are simplified by so much of the side, and by this divided by the root of the number of bodies.
+constexpr double coarsest = 1e-4, coarsest_of_many = 1e-3;
+
+}  // namespace
+
+LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, ProgressMonitor& monitor)
+    : bodies_(bodies), options_(options), monitor_(monitor), has_area_(options.area.has_value()) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    has_obstacles_ |= bodies[b].keeps_place;
+    has_own_scales_ |= options.fill && bodies[b].keeps_scale && !bodies[b].keeps_place;
+    if (!bodies[b].keeps_place) free_.push_back(static_cast<Index>(b));
+  }
+  has_area_ |= options.fill || has_obstacles_ || options.tiles > 1;
+  inside_ = options.area.value_or(UvRectangle{});
+  const double snap = options.snap;
+  const double margin = snap > 0 ? std::ceil(options.margin / snap) * snap : options.margin;
+  if (has_area_) {
+    inside_ = {inside_.left + margin, inside_.bottom + margin, inside_.right - margin, inside_.top - margin};
+  } else {
+    inside_ = {margin, margin, margin + 1, margin + 1};
+  }
+}
+
+// Whether the side that bodies fill is found by placing them in a tile that is larger than they need.
+bool LayoutSearch::grows() const {
+  return !has_obstacles_ && options_.tiles == 1 && !sizes_depend_on_side();
+}
+
+// Whether some bodies have other sizes, in texels, at another side.
+bool LayoutSearch::sizes_depend_on_side() const { return options_.fill && (has_own_scales_ || options_.snap > 0); }
+
+// In the unit of bodies.
+double LayoutSearch::gap(double side) const {
+  const double scale = options_.fill ? side : 1.0;
+  return 2 * options_.margin * scale + 2 * tolerance_ + widened * expected_side_;
+}
+
+double LayoutSearch::estimated_side() const {
+  const double width = inside_.right - inside_.left, height = inside_.top - inside_.bottom;
+  double area = 0, around = 0, longest = 0;
+  for (const Index b : free_) {
+    const Box box = bodies_[b].outline.box();
+    area += bodies_[b].area;
+    around += (box.right - box.left) + (box.top - box.bottom);
+    longest = std::max({longest, box.right - box.left, box.top - box.bottom});
+  }
+  const double room = width * height * options_.tiles * first_fill;
+  double side = std::max(std::sqrt(area / room), longest / std::max(width, height) / 2);
+  for (int i = 0; i < 4; ++i) {
+    const double gap = 2 * options_.margin * (options_.fill ? side : 1.0);
+    side = std::max(side, std::sqrt((area + gap * around + gap * gap * static_cast<double>(free_.size())) / room));
+  }
+  return side;
+}
+
+LayoutSearch::Order LayoutSearch::by_size() const {
+  Order out;
+  out.pose.assign(bodies_.size(), -1);
+  out.bodies = free_;
+  Array<double> size(bodies_.size(), 0);
+  for (const Index b : free_) {
+    const Box box = outline_[b].box();
+    size[b] = (box.right - box.left) + (box.top - box.bottom);
+  }
+  std::stable_sort(out.bodies.begin(), out.bodies.end(), [&](Index a, Index b) { return size[a] > size[b]; });
+  return out;
+}
+
+void LayoutSearch::rasterize(double side) {
+  texel_ = options_.snap > 0 ? options_.snap * (options_.fill ? side : 1.0) : expected_side_ / texels_;
+  rasterized_for_ = side;
+  poses_.assign(bodies_.size(), {});
+  for (const Index b : free_) {
+    const double scale = options_.fill && bodies_[b].keeps_scale ? side : 1.0;
+    poses_[b] = poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / texel_);
+  }
+}
+
+Array<TileSpace> LayoutSearch::tiles(double side) const {
+  constexpr double room_to_grow = 1.7;
+  const double scale = (grows() ? room_to_grow * (options_.fill ? side : expected_side_) : options_.fill ? side : 1.0);
+  const double width = (inside_.right - inside_.left) * scale - 2 * tolerance_;
+  const double height = (inside_.top - inside_.bottom) * scale - 2 * tolerance_;
+  Array<TileSpace> out(options_.tiles, {width / texel_, height / texel_, {}});
+  for (const Body& body : bodies_) {
+    if (!body.keeps_place) continue;
+    const Complex low(inside_.left, inside_.bottom);
+    const double texels = (options_.fill ? side : 1.0) / texel_;
+    const Complex shift = (body.origin - low) * texels - Complex(tolerance_, tolerance_) / texel_;
+    out[0].obstacles.push_back(body.outline.moved(texels, shift));
+  }
+  return out;
+}
+
+LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side) {
+  if (poses_.empty() || (sizes_depend_on_side() && rasterized_for_ != side)) rasterize(side);
+  ConstructionOptions how;
+  how.gap = gap(side) / texel_;
+  how.on_texels = options_.snap > 0;
+  how.rule = order.rule;
+  constexpr std::size_t few = 128;
+  how.skips_full_rows = free_.size() > few;
+  Attempt out;
+  out.found = construct(poses_, tiles(side), order.bodies, order.pose, how, true);
+  if (out.found.missing > 0) {
+    out.side = side * failed_growth;
+  } else if (grows()) {
+    const double width = out.found.width * texel_ + 2 * tolerance_, height = out.found.height * texel_ + 2 * tolerance_;
+    out.side = std::max(width / (inside_.right - inside_.left), height / (inside_.top - inside_.bottom));
+    out.is_valid = options_.fill ? out.side <= side : !has_area_ || out.side <= 1;
+  } else {
+    out.side = side;
+    out.is_valid = true;
+  }
+  return out;
+}
+
+bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
+  if (!attempt.is_valid || (side_ > 0 && attempt.side >= side_)) return false;
+  order_ = order;
+  best_ = std::move(attempt.found);
+  side_ = attempt.side;
+  return true;
+}
+
+void LayoutSearch::find_first(const Order& order) {
+  double side = options_.fill ? expected_side_ : 1.0;
+  for (int i = 0; i < most_growths; ++i) {
+    Attempt found = attempt(order, side);
+    const double needed = found.side;
+    if (take_if_better(order, std::move(found))) return;
+    if (!options_.fill) break;
+    side = std::max(needed * growth, side * growth);
+  }
+  refuse(order, side);
+}
+
+// The same order in a smaller square.
+void LayoutSearch::tighten() {
+  if (!options_.fill) return;
+  if (grows()) {
+    constexpr int most = 3;
+    constexpr double gain = 0.998;
+    for (int i = 0; i < most; ++i) {
+      const double before = side_;
+      if (!take_if_better(order_, attempt(order_, side_)) || side_ > gain * before) return;
+    }
+    return;
+  }
+  constexpr double near = 1.004;
+  double area = 0;
+  for (const Index b : free_) area += bodies_[b].keeps_scale ? 0 : bodies_[b].area;
+  double low = std::sqrt(area / ((inside_.right - inside_.left) * (inside_.top - inside_.bottom) * options_.tiles));
+  while (side_ > near * low) {
+    const double middle = (side_ + std::max(low, side_ / 2)) / 2;
+    if (!take_if_better(order_, attempt(order_, middle))) low = middle;
+  }
+}
+
+void LayoutSearch::vary_order() {
+  using Clock = std::chrono::steady_clock;
+  const auto count = static_cast<int>(free_.size());
+  if (options_.effort == PackingEffort::quick || count == 0) return;
+  const bool is_best = options_.effort == PackingEffort::best;
+  const int tries = std::clamp((is_best ? 200000 : 8000) / count, is_best ? 100 : 8, is_best ? 5000 : 400);
+  const bool is_timed = is_best && options_.seconds.has_value();
+  const auto begin = Clock::now();
+  const auto done = [&](int number) {
+    if (!is_timed) return static_cast<double>(number) / tries;
+    return std::chrono::duration<double>(Clock::now() - begin).count() / *options_.seconds;
+  };
+  std::mt19937 random(0);
+  const auto below = [&](int most) { return static_cast<int>(random() % static_cast<std::uint32_t>(most)); };
+  constexpr double smaller = 0.995;
+  for (int number = 0; done(number) < 1; ++number) {
+    monitor_.advance(done(number));
+    Order order = order_;
+    const int kind = below(4);
+    const int changes = 1 + below(3);
+    for (int change = 0; change < changes; ++change) {
+      const int one = below(count), other = below(count);
+      if (kind < 2) {
+        std::swap(order.bodies[one], order.bodies[other]);
+      } else if (kind == 2) {
+        const Index moved = order.bodies[one];
+        order.bodies.erase(order.bodies.begin() + one);
+        order.bodies.insert(order.bodies.begin() + other, moved);
+      } else {
+        const Index body = order.bodies[one];
+        order.pose[body] = below(3) == 0 ? -1 : below(static_cast<int>(poses_[body].size()));
+      }
+    }
+    if (below(8) == 0) order.rule = order.rule == PlaceRule::lowest ? PlaceRule::nearest_corner : PlaceRule::lowest;
+    take_if_better(order, attempt(order, grows() ? side_ : side_ * smaller));
+  }
+}
+
+Array<Motion> LayoutSearch::best() {
+  const auto count = static_cast<double>(free_.size());
+  expected_side_ = estimated_side();
+  double farthest = 0;
+  for (const Body& body : bodies_) farthest = std::max(farthest, std::abs(body.origin));
+  constexpr double no_size = 1e-200, last_digit = std::numeric_limits<double>::epsilon();
+  constexpr double texels_of_body = 24, least_texels = 128, most_texels = 1024;
+  texels_ = static_cast<int>(
+      std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
+  if (expected_side_ <= std::max(texels_ * last_digit * farthest, no_size)) {
+    throw Error(Code::wrong_parameter,
+                concat("The square that the islands fill is ", rounded(expected_side_ / std::max(farthest, expected_side_), 2),
+                       " of their distance from the origin, too small to place them in. Move them to the origin, or "
+                       "leave out those that are points."));
+  }
+  if (options_.snap == 0) tolerance_ = expected_side_ * std::min(coarsest, coarsest_of_many / std::sqrt(count));
+  for (const Body& body : bodies_) outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
+  constexpr double few = 8, some = 64;
+  directions_ = count <= few ? 16 : count <= some ? 4 : 0;
+  if (options_.effort == PackingEffort::quick) directions_ = count <= few ? 8 : 0;
+  find_first(by_size());
+  tighten();
+  vary_order();
+  return motions();
+}
+
+Array<Motion> LayoutSearch::motions() const {
+  Array<Motion> out(bodies_.size());
+  Array<Outline> moved;
+  Box all{1e300, -1e300, 1e300, -1e300};
+  for (const Index b : free_) {
+    const Placed& placed = best_.placed[b];
+    const Pose& pose = poses_[b][placed.pose];
+    const double scale = options_.fill && bodies_[b].keeps_scale ? side_ : 1.0;
+    out[b] = {placed.tile, pose.turn * scale, (pose.shift + placed.at) * texel_ + Complex(tolerance_, tolerance_)};
+    moved.push_back(bodies_[b].outline.moved(out[b].factor, out[b].shift));
+    all = around(all, moved.back().box());
+  }
+  double side = options_.fill ? side_ : 1.0;
+  Complex low = 0;
+  if (grows() && options_.snap == 0) {
+    low = {all.left, all.bottom};
+    if (options_.fill)
+      side = std::max((all.right - all.left) / (inside_.right - inside_.left),
+                      (all.top - all.bottom) / (inside_.top - inside_.bottom));
+  }
+  for (const Index b : free_) {
+    out[b].factor /= side;
+    out[b].shift = (out[b].shift - low) / side + Complex(inside_.left, inside_.bottom);
+  }
+  return out;
+}
+
+void LayoutSearch::refuse(const Order& order, double side) {
+  ConstructionOptions how;
+  how.gap = gap(side) / texel_;
+  how.on_texels = options_.snap > 0;
+  const double scale = options_.fill ? side : 1.0;
+  Array<TileSpace> spaces = tiles(side);
+  for (TileSpace& space : spaces) {
+    space.width = ((inside_.right - inside_.left) * scale - 2 * tolerance_) / texel_;
+    space.height = ((inside_.top - inside_.bottom) * scale - 2 * tolerance_) / texel_;
+  }
+  const Constructed found = construct(poses_, spaces, order.bodies, order.pose, how, false);
+  std::vector<Index> left_out;
+  Index fitting = 0;
+  for (const Index b : free_) {
+    const auto& islands = bodies_[b].islands;
+    if (found.placed[b].tile < 0)
+      left_out.insert(left_out.end(), islands.begin(), islands.end());
+    else
+      fitting += static_cast<Index>(islands.size());
+  }
+  std::sort(left_out.begin(), left_out.end());
+  throw Error(Code::wrong_parameter,
+              concat("With a margin of ", rounded(options_.margin), " only ", fitting, " of ", fitting + ssize(left_out),
+                     " islands fit into the area; left out are, for instance, ", list(left_out),
+                     ". Pass a smaller margin", options_.fill ? "." : ", a larger area or smaller islands."));
+}
+
+}  // namespace lsgp

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The best layout of bodies: the scale at which they fill a rectangle, and the order in which they are placed.
+#pragma once
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "packing/body.hpp"
+#include "packing/construction.hpp"
+
+namespace lsgp {
+
+// How a body is moved: around its origin it is multiplied, and then shifted, in texture coordinates.
+struct Motion {
+  int tile = -1;
+  Complex factor, shift;
+};
+
+class LayoutSearch {
+ public:
+  // bodies, options: have to live longer.
+  LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, ProgressMonitor& monitor);
+
+  // How to move each body; those that keep their place are left out. Throws WRONG_PARAMETER where no layout is found.
+  Array<Motion> best();
+
+ private:
+  // In which order bodies are placed, and how.
+  struct Order {
+    Array<Index> bodies;
+    Array<int> pose;  // (bodies) that it has to take, -1: any
+    PlaceRule rule = PlaceRule::lowest;
+  };
+  struct Attempt {
+    Constructed found;
+    // The side that it fills; if bodies were left out, or it is wider than margins were for, it is not valid.
+    double side = 0;
+    bool is_valid = false;
+  };
+
+  bool grows() const;
+  bool sizes_depend_on_side() const;
+  double gap(double side) const;
+  double estimated_side() const;
+  Order by_size() const;
+  void rasterize(double side);
+  Array<TileSpace> tiles(double side) const;
+  Attempt attempt(const Order& order, double side);
+  bool take_if_better(const Order& order, Attempt attempt);
+  void find_first(const Order& order);
+  void tighten();
+  void vary_order();
+  Array<Motion> motions() const;
+  [[noreturn]] void refuse(const Order& order, double side);
+
+  const Array<Body>& bodies_;
+  const PackingOptions& options_;
+  ProgressMonitor& monitor_;
+  UvRectangle inside_;  // the area without the margin at its border
+  bool has_area_;       // islands that keep their size have to fit into it
+  bool has_obstacles_ = false, has_own_scales_ = false;
+  Array<Index> free_;   // bodies that do not keep their place
+
+  double tolerance_ = 0;    // of the outlines
+  Array<Outline> outline_;  // (bodies) simplified
+  double expected_side_ = 0;
+  int directions_ = 0;
+  bool also_along_axes_ = false;
+  int texels_ = 0;  // of the expected side
+
+  double texel_ = 0;          // in the unit of bodies
+  double rasterized_for_ = 0; // the side
+  Array<Array<Pose>> poses_;  // (bodies)
+
+  Order order_;  // of the best so far
+  Constructed best_;
+  double side_ = 0;
+};
+
+}  // namespace lsgp
