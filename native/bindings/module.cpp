@@ -686,12 +686,13 @@ lsgp::PackingOptions to_packing_options(const py::dict& values) {
   lsgp::PackingOptions options;
   options.margin = values["margin"].cast<double>();
   options.fill = values["fill"].cast<bool>();
-  options.turns = choose<lsgp::IslandTurns>(values["turns"].cast<std::string>(), {{"none", lsgp::IslandTurns::none},
-                                                                                  {"quarters", lsgp::IslandTurns::quarters},
-                                                                                  {"any", lsgp::IslandTurns::any}});
-  options.effort = choose<lsgp::PackingEffort>(values["effort"].cast<std::string>(), {{"quick", lsgp::PackingEffort::quick},
-                                                                                      {"good", lsgp::PackingEffort::good},
-                                                                                      {"best", lsgp::PackingEffort::best}});
+  options.turns = choose<lsgp::IslandTurns>(
+      values["turns"].cast<std::string>(),
+      {{"none", lsgp::IslandTurns::none}, {"quarters", lsgp::IslandTurns::quarters}, {"any", lsgp::IslandTurns::any}});
+  options.effort =
+      choose<lsgp::PackingEffort>(values["effort"].cast<std::string>(), {{"quick", lsgp::PackingEffort::quick},
+                                                                         {"good", lsgp::PackingEffort::good},
+                                                                         {"best", lsgp::PackingEffort::best}});
   options.seconds = values["seconds"].cast<std::optional<double>>();
   if (!values["area"].is_none()) {
     const auto [left, bottom, right, top] = values["area"].cast<std::array<double, 4>>();

@@ -195,6 +195,10 @@ SOURCES = {
     ),
     "assembly": ("sites", "search", "placement", "quads"),
     "kept": ("quads", "assembly"),
+    "packing": (
+        *("solvers", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search", "repair"),
+        *("pipeline", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
+    ),
     "api": (),
 }
 

@@ -33,6 +33,28 @@ void add_between(Complex begin, Complex end, int count, Array<Complex>& out) {
   add_between(middle, end, count / 2, out);
 }
 
+// The turn of a convex polygon, within a quarter, for which the square around it is smallest; looked for in steps that
+// get finer.
+Complex squarest_turn(const Array<Complex>& hull) {
+  constexpr int steps = 64, refinements = 3;
+  const auto side = [&](Complex turn) {
+    const Extent extent = extent_along(hull, std::conj(turn));
+    return std::max(extent.width(), extent.height());
+  };
+  Complex begin = 1, end = quarter_turned(1), best = 1;
+  for (int i = 0; i < refinements; ++i) {
+    Array<Complex> turns;
+    add_between(begin, end, steps, turns);
+    turns.push_back(end);
+    const auto found =
+        std::min_element(turns.begin(), turns.end(), [&](Complex a, Complex b) { return side(a) < side(b); });
+    if (side(*found) < side(best)) best = *found;
+    begin = found == turns.begin() ? *found : *(found - 1);
+    end = found + 1 == turns.end() ? *found : *(found + 1);
+  }
+  return best;
+}
+
 bool is_same(const Pose& a, const Pose& b) {
   const double near = same * std::max(a.width, a.height);
   if (std::abs(a.width - b.width) > near || std::abs(a.height - b.height) > near) return false;
@@ -108,9 +130,12 @@ Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes) 
     const Array<Complex> hull =
         convex_hull(Eigen::Map<const Eigen::VectorXcd>(points.data(), static_cast<Eigen::Index>(points.size())));
     if (hull.size() > 1) within_quarter = {std::conj(longer_side(hull))};
-    Array<Complex> further;
-    if (directions > 0) add_between(1, quarter_turned(1), directions, further);
-    for (const Complex turn : further) within_quarter.push_back(turn * within_quarter[0]);
+    if (directions > 0) {
+      Array<Complex> further;
+      add_between(1, quarter_turned(1), directions, further);
+      for (std::size_t i = 1; i < further.size(); ++i) within_quarter.push_back(further[i] * within_quarter[0]);
+      within_quarter.push_back(squarest_turn(hull));
+    }
   }
   if (body.turns == IslandTurns::none) return {1};
   Array<Complex> out;

@@ -10,10 +10,10 @@
 namespace lsgp {
 
 struct Body {
-  Array<Index> islands;     // their numbers
-  Complex origin;           // of the outline, in texture coordinates
-  Outline outline;          // around its origin
-  double area = 0;          // of all triangles
+  Array<Index> islands;  // their numbers
+  Complex origin;        // of the outline, in texture coordinates
+  Outline outline;       // around its origin
+  double area = 0;       // of all triangles
   IslandTurns turns = IslandTurns::any;
   bool keeps_scale = false;
   bool keeps_place = false;
@@ -31,8 +31,8 @@ Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes);
 
 // A body turned, and rasterized, its box with the low corner at the origin; in texels.
 struct Pose {
-  Complex turn;     // of length 1
-  Complex shift;    // the outline is that of the body, turned and scaled, plus this
+  Complex turn;   // of length 1
+  Complex shift;  // the outline is that of the body, turned and scaled, plus this
   Outline outline;
   double width, height;
   Footprint footprint;

@@ -84,8 +84,8 @@ class Tile {
     const double right = column + pose.width, top = row + pose.height;
     const double wide = std::max(used_width_, right) / width_, high = std::max(used_height_, top) / height_;
     const double side = std::max(wide, high);
-    const double further = options_.rule == PlaceRule::lowest ? row * width_ + column
-                                                              : std::max(right / width_, top / height_);
+    const double further =
+        options_.rule == PlaceRule::lowest ? row * width_ + column : std::max(right / width_, top / height_);
     return {side * side + wide * high, further};
   }
 

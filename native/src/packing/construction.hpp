@@ -34,8 +34,8 @@ struct ConstructionOptions {
 };
 
 struct Constructed {
-  Array<Placed> placed;        // (bodies)
-  Index missing = 0;           // bodies without a place
+  Array<Placed> placed;          // (bodies)
+  Index missing = 0;             // bodies without a place
   double width = 0, height = 0;  // of the fullest tile: what bodies take of it, from its low corner
 };
 

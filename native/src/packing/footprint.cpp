@@ -44,8 +44,8 @@ void TakenTexels::take(const Outline& outline, double reach) {
   draw(outline, reach, levels_[0]);
   const int first = std::max(static_cast<int>(std::floor(box.bottom - reach)), 0);
   const int end = std::min(static_cast<int>(std::ceil(box.top + reach)) + 1, rows());
-  const int last_word = std::min(static_cast<int>(std::max(box.right + reach, 0.0)) + 1, levels_[0].columns() / 2) /
-                        BitRows::word_bits;
+  const int last_word =
+      std::min(static_cast<int>(std::max(box.right + reach, 0.0)) + 1, levels_[0].columns() / 2) / BitRows::word_bits;
   for (int level = 1; level < static_cast<int>(levels_.size()); ++level) {
     const BitRows& half = levels_[level - 1];
     const int step = 1 << (level - 1);

@@ -21,6 +21,9 @@ namespace {
 // What of the area the first layout that is tried fills, and by how much its side grows until one is found.
 constexpr double first_fill = 0.65, growth = 1.02, failed_growth = 1.12;
 constexpr int most_growths = 16;
+// Where so little of the area is filled, sides along the axes are given up for a layout whose side is so much shorter,
+// as of strips along the diagonal. Unfolded boxes fill more.
+constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
 constexpr double widened = 1e-9;
 // Outlines are simplified by so much of the side, and by this divided by the root of the number of bodies.
@@ -47,9 +50,7 @@ LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& opti
 }
 
 // Whether the side that bodies fill is found by placing them in a tile that is larger than they need.
-bool LayoutSearch::grows() const {
-  return !has_obstacles_ && options_.tiles == 1 && !sizes_depend_on_side();
-}
+bool LayoutSearch::grows() const { return !has_obstacles_ && options_.tiles == 1 && !sizes_depend_on_side(); }
 
 // Whether some bodies have other sizes, in texels, at another side.
 bool LayoutSearch::sizes_depend_on_side() const { return options_.fill && (has_own_scales_ || options_.snap > 0); }
@@ -92,12 +93,12 @@ LayoutSearch::Order LayoutSearch::by_size() const {
 }
 
 void LayoutSearch::rasterize(double side) {
-  texel_ = options_.snap > 0 ? options_.snap * (options_.fill ? side : 1.0) : expected_side_ / texels_;
-  rasterized_for_ = side;
-  poses_.assign(bodies_.size(), {});
+  now_.texel = options_.snap > 0 ? options_.snap * (options_.fill ? side : 1.0) : expected_side_ / texels_;
+  now_.rasterized_for = side;
+  now_.poses.assign(bodies_.size(), {});
   for (const Index b : free_) {
     const double scale = options_.fill && bodies_[b].keeps_scale ? side : 1.0;
-    poses_[b] = poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / texel_);
+    now_.poses[b] = poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / now_.texel);
   }
 }
 
@@ -106,31 +107,32 @@ Array<TileSpace> LayoutSearch::tiles(double side) const {
   const double scale = (grows() ? room_to_grow * (options_.fill ? side : expected_side_) : options_.fill ? side : 1.0);
   const double width = (inside_.right - inside_.left) * scale - 2 * tolerance_;
   const double height = (inside_.top - inside_.bottom) * scale - 2 * tolerance_;
-  Array<TileSpace> out(options_.tiles, {width / texel_, height / texel_, {}});
+  Array<TileSpace> out(options_.tiles, {width / now_.texel, height / now_.texel, {}});
   for (const Body& body : bodies_) {
     if (!body.keeps_place) continue;
     const Complex low(inside_.left, inside_.bottom);
-    const double texels = (options_.fill ? side : 1.0) / texel_;
-    const Complex shift = (body.origin - low) * texels - Complex(tolerance_, tolerance_) / texel_;
+    const double texels = (options_.fill ? side : 1.0) / now_.texel;
+    const Complex shift = (body.origin - low) * texels - Complex(tolerance_, tolerance_) / now_.texel;
     out[0].obstacles.push_back(body.outline.moved(texels, shift));
   }
   return out;
 }
 
 LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side) {
-  if (poses_.empty() || (sizes_depend_on_side() && rasterized_for_ != side)) rasterize(side);
+  if (now_.poses.empty() || (sizes_depend_on_side() && now_.rasterized_for != side)) rasterize(side);
   ConstructionOptions how;
-  how.gap = gap(side) / texel_;
+  how.gap = gap(side) / now_.texel;
   how.on_texels = options_.snap > 0;
   how.rule = order.rule;
   constexpr std::size_t few = 128;
   how.skips_full_rows = free_.size() > few;
   Attempt out;
-  out.found = construct(poses_, tiles(side), order.bodies, order.pose, how, true);
+  out.found = construct(now_.poses, tiles(side), order.bodies, order.pose, how, true);
   if (out.found.missing > 0) {
     out.side = side * failed_growth;
   } else if (grows()) {
-    const double width = out.found.width * texel_ + 2 * tolerance_, height = out.found.height * texel_ + 2 * tolerance_;
+    const double width = out.found.width * now_.texel + 2 * tolerance_,
+                 height = out.found.height * now_.texel + 2 * tolerance_;
     out.side = std::max(width / (inside_.right - inside_.left), height / (inside_.top - inside_.bottom));
     out.is_valid = options_.fill ? out.side <= side : !has_area_ || out.side <= 1;
   } else {
@@ -141,10 +143,10 @@ LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side) {
 }
 
 bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
-  if (!attempt.is_valid || (side_ > 0 && attempt.side >= side_)) return false;
-  order_ = order;
-  best_ = std::move(attempt.found);
-  side_ = attempt.side;
+  if (!attempt.is_valid || (now_.side > 0 && attempt.side >= now_.side)) return false;
+  now_.order = order;
+  now_.found = std::move(attempt.found);
+  now_.side = attempt.side;
   return true;
 }
 
@@ -167,8 +169,8 @@ void LayoutSearch::tighten() {
     constexpr int most = 3;
     constexpr double gain = 0.998;
     for (int i = 0; i < most; ++i) {
-      const double before = side_;
-      if (!take_if_better(order_, attempt(order_, side_)) || side_ > gain * before) return;
+      const double before = now_.side;
+      if (!take_if_better(now_.order, attempt(now_.order, now_.side)) || now_.side > gain * before) return;
     }
     return;
   }
@@ -176,9 +178,9 @@ void LayoutSearch::tighten() {
   double area = 0;
   for (const Index b : free_) area += bodies_[b].keeps_scale ? 0 : bodies_[b].area;
   double low = std::sqrt(area / ((inside_.right - inside_.left) * (inside_.top - inside_.bottom) * options_.tiles));
-  while (side_ > near * low) {
-    const double middle = (side_ + std::max(low, side_ / 2)) / 2;
-    if (!take_if_better(order_, attempt(order_, middle))) low = middle;
+  while (now_.side > near * low) {
+    const double middle = (now_.side + std::max(low, now_.side / 2)) / 2;
+    if (!take_if_better(now_.order, attempt(now_.order, middle))) low = middle;
   }
 }
 
@@ -199,7 +201,7 @@ void LayoutSearch::vary_order() {
   constexpr double smaller = 0.995;
   for (int number = 0; done(number) < 1; ++number) {
     monitor_.advance(done(number));
-    Order order = order_;
+    Order order = now_.order;
     const int kind = below(4);
     const int changes = 1 + below(3);
     for (int change = 0; change < changes; ++change) {
@@ -212,11 +214,11 @@ void LayoutSearch::vary_order() {
         order.bodies.insert(order.bodies.begin() + other, moved);
       } else {
         const Index body = order.bodies[one];
-        order.pose[body] = below(3) == 0 ? -1 : below(static_cast<int>(poses_[body].size()));
+        order.pose[body] = below(3) == 0 ? -1 : below(static_cast<int>(now_.poses[body].size()));
       }
     }
     if (below(8) == 0) order.rule = order.rule == PlaceRule::lowest ? PlaceRule::nearest_corner : PlaceRule::lowest;
-    take_if_better(order, attempt(order, grows() ? side_ : side_ * smaller));
+    take_if_better(order, attempt(order, grows() ? now_.side : now_.side * smaller));
   }
 }
 
@@ -227,23 +229,47 @@ Array<Motion> LayoutSearch::best() {
   for (const Body& body : bodies_) farthest = std::max(farthest, std::abs(body.origin));
   constexpr double no_size = 1e-200, last_digit = std::numeric_limits<double>::epsilon();
   constexpr double texels_of_body = 24, least_texels = 128, most_texels = 1024;
-  texels_ = static_cast<int>(
-      std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
+  texels_ = static_cast<int>(std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
   if (expected_side_ <= std::max(texels_ * last_digit * farthest, no_size)) {
-    throw Error(Code::wrong_parameter,
-                concat("The square that the islands fill is ", rounded(expected_side_ / std::max(farthest, expected_side_), 2),
-                       " of their distance from the origin, too small to place them in. Move them to the origin, or "
-                       "leave out those that are points."));
+    throw Error(
+        Code::wrong_parameter,
+        concat("The square that the islands fill is ", rounded(expected_side_ / std::max(farthest, expected_side_), 2),
+               " of their distance from the origin, too small to place them in. Move them to the origin, or "
+               "leave out those that are points."));
   }
   if (options_.snap == 0) tolerance_ = expected_side_ * std::min(coarsest, coarsest_of_many / std::sqrt(count));
-  for (const Body& body : bodies_) outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
+  for (const Body& body : bodies_)
+    outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
   constexpr double few = 8, some = 64;
   directions_ = count <= few ? 16 : count <= some ? 4 : 0;
   if (options_.effort == PackingEffort::quick) directions_ = count <= few ? 8 : 0;
+  search();
+  if (is_hardly_filled()) {
+    const State aligned = std::move(now_);
+    now_ = {};
+    also_along_axes_ = true;
+    search();
+    if (now_.side > shorter_unaligned * aligned.side) now_ = aligned;
+  }
+  return motions();
+}
+
+void LayoutSearch::search() {
   find_first(by_size());
   tighten();
   vary_order();
-  return motions();
+}
+
+// Whether other turns of bodies that lie along the axes may be worth it, as of long strips.
+bool LayoutSearch::is_hardly_filled() const {
+  double area = 0;
+  bool any_aligned = false;
+  for (const Index b : free_) {
+    area += bodies_[b].area;
+    any_aligned |= bodies_[b].turns == IslandTurns::any && lies_along_axes(bodies_[b].outline);
+  }
+  const double whole = (inside_.right - inside_.left) * (inside_.top - inside_.bottom) * options_.tiles;
+  return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
 }
 
 Array<Motion> LayoutSearch::motions() const {
@@ -251,14 +277,14 @@ Array<Motion> LayoutSearch::motions() const {
   Array<Outline> moved;
   Box all{1e300, -1e300, 1e300, -1e300};
   for (const Index b : free_) {
-    const Placed& placed = best_.placed[b];
-    const Pose& pose = poses_[b][placed.pose];
-    const double scale = options_.fill && bodies_[b].keeps_scale ? side_ : 1.0;
-    out[b] = {placed.tile, pose.turn * scale, (pose.shift + placed.at) * texel_ + Complex(tolerance_, tolerance_)};
+    const Placed& placed = now_.found.placed[b];
+    const Pose& pose = now_.poses[b][placed.pose];
+    const double scale = options_.fill && bodies_[b].keeps_scale ? now_.side : 1.0;
+    out[b] = {placed.tile, pose.turn * scale, (pose.shift + placed.at) * now_.texel + Complex(tolerance_, tolerance_)};
     moved.push_back(bodies_[b].outline.moved(out[b].factor, out[b].shift));
     all = around(all, moved.back().box());
   }
-  double side = options_.fill ? side_ : 1.0;
+  double side = options_.fill ? now_.side : 1.0;
   Complex low = 0;
   if (grows() && options_.snap == 0) {
     low = {all.left, all.bottom};
@@ -275,15 +301,15 @@ Array<Motion> LayoutSearch::motions() const {
 
 void LayoutSearch::refuse(const Order& order, double side) {
   ConstructionOptions how;
-  how.gap = gap(side) / texel_;
+  how.gap = gap(side) / now_.texel;
   how.on_texels = options_.snap > 0;
   const double scale = options_.fill ? side : 1.0;
   Array<TileSpace> spaces = tiles(side);
   for (TileSpace& space : spaces) {
-    space.width = ((inside_.right - inside_.left) * scale - 2 * tolerance_) / texel_;
-    space.height = ((inside_.top - inside_.bottom) * scale - 2 * tolerance_) / texel_;
+    space.width = ((inside_.right - inside_.left) * scale - 2 * tolerance_) / now_.texel;
+    space.height = ((inside_.top - inside_.bottom) * scale - 2 * tolerance_) / now_.texel;
   }
-  const Constructed found = construct(poses_, spaces, order.bodies, order.pose, how, false);
+  const Constructed found = construct(now_.poses, spaces, order.bodies, order.pose, how, false);
   std::vector<Index> left_out;
   Index fitting = 0;
   for (const Index b : free_) {
@@ -294,10 +320,11 @@ void LayoutSearch::refuse(const Order& order, double side) {
       fitting += static_cast<Index>(islands.size());
   }
   std::sort(left_out.begin(), left_out.end());
-  throw Error(Code::wrong_parameter,
-              concat("With a margin of ", rounded(options_.margin), " only ", fitting, " of ", fitting + ssize(left_out),
-                     " islands fit into the area; left out are, for instance, ", list(left_out),
-                     ". Pass a smaller margin", options_.fill ? "." : ", a larger area or smaller islands."));
+  throw Error(
+      Code::wrong_parameter,
+      concat("With a margin of ", rounded(options_.margin), " only ", fitting, " of ", fitting + ssize(left_out),
+             " islands fit into the area; left out are, for instance, ", list(left_out), ". Pass a smaller margin",
+             options_.fill ? "." : ", a larger area or smaller islands."));
 }
 
 }  // namespace lsgp

@@ -37,6 +37,16 @@ class LayoutSearch {
     bool is_valid = false;
   };
 
+  // The best layout so far, and the bodies in texels.
+  struct State {
+    double texel = 0;           // in the unit of bodies
+    double rasterized_for = 0;  // the side
+    Array<Array<Pose>> poses;   // (bodies)
+    Order order;
+    Constructed found;
+    double side = 0;  // 0: there is none
+  };
+
   bool grows() const;
   bool sizes_depend_on_side() const;
   double gap(double side) const;
@@ -46,6 +56,8 @@ class LayoutSearch {
   Array<TileSpace> tiles(double side) const;
   Attempt attempt(const Order& order, double side);
   bool take_if_better(const Order& order, Attempt attempt);
+  void search();
+  bool is_hardly_filled() const;
   void find_first(const Order& order);
   void tighten();
   void vary_order();
@@ -58,7 +70,7 @@ class LayoutSearch {
   UvRectangle inside_;  // the area without the margin at its border
   bool has_area_;       // islands that keep their size have to fit into it
   bool has_obstacles_ = false, has_own_scales_ = false;
-  Array<Index> free_;   // bodies that do not keep their place
+  Array<Index> free_;  // bodies that do not keep their place
 
   double tolerance_ = 0;    // of the outlines
   Array<Outline> outline_;  // (bodies) simplified
@@ -67,13 +79,7 @@ class LayoutSearch {
   bool also_along_axes_ = false;
   int texels_ = 0;  // of the expected side
 
-  double texel_ = 0;          // in the unit of bodies
-  double rasterized_for_ = 0; // the side
-  Array<Array<Pose>> poses_;  // (bodies)
-
-  Order order_;  // of the best so far
-  Constructed best_;
-  double side_ = 0;
+  State now_;
 };
 
 }  // namespace lsgp

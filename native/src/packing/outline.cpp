@@ -60,16 +60,16 @@ class SideChain {
   // Removes pairs that run against each other, and sorts the others by their tails.
   void cancel() {
     const auto along = [](const Side& side) { return std::minmax(side.first, side.second); };
-    std::sort(sides_.begin(), sides_.end(), [&](const Side& a, const Side& b) {
-      return along(a) != along(b) ? along(a) < along(b) : a < b;
-    });
+    std::sort(sides_.begin(), sides_.end(),
+              [&](const Side& a, const Side& b) { return along(a) != along(b) ? along(a) < along(b) : a < b; });
     Array<Side> left;
     for (std::size_t begin = 0, end; begin < sides_.size(); begin = end) {
       Index upward = 0;
       for (end = begin; end < sides_.size() && along(sides_[end]) == along(sides_[begin]); ++end)
         upward += sides_[end].first < sides_[end].second ? 1 : -1;
       const auto [low, high] = along(sides_[begin]);
-      left.insert(left.end(), static_cast<std::size_t>(std::abs(upward)), upward > 0 ? Side(low, high) : Side(high, low));
+      left.insert(left.end(), static_cast<std::size_t>(std::abs(upward)),
+                  upward > 0 ? Side(low, high) : Side(high, low));
     }
     sides_ = std::move(left);
     std::sort(sides_.begin(), sides_.end());
@@ -151,7 +151,8 @@ Box Outline::box() const {
 Outline Outline::moved(Complex factor, Complex shift) const {
   Outline out(*this);
   for (Complex& z : out.points_) {
-    z = Complex(z.real() * factor.real() - z.imag() * factor.imag(), z.real() * factor.imag() + z.imag() * factor.real()) +
+    z = Complex(z.real() * factor.real() - z.imag() * factor.imag(),
+                z.real() * factor.imag() + z.imag() * factor.real()) +
         shift;
   }
   return out;

@@ -32,7 +32,8 @@ class Outline {
   template <typename Visit>
   void for_each_segment(Visit visit) const {
     for (std::size_t p = 0; p + 1 < first_.size(); ++p) {
-      for (Index i = first_[p]; i < first_[p + 1]; ++i) visit(points_[i], points_[i + 1 < first_[p + 1] ? i + 1 : first_[p]]);
+      for (Index i = first_[p]; i < first_[p + 1]; ++i)
+        visit(points_[i], points_[i + 1 < first_[p + 1] ? i + 1 : first_[p]]);
     }
   }
 

@@ -20,9 +20,7 @@ struct Segment {
 
 Complex along(Axis axis, Complex z) { return axis == Axis::u ? z : Complex(z.imag(), z.real()); }
 
-Box along(Axis axis, const Box& box) {
-  return axis == Axis::u ? box : Box{box.bottom, box.top, box.left, box.right};
-}
+Box along(Axis axis, const Box& box) { return axis == Axis::u ? box : Box{box.bottom, box.top, box.left, box.right}; }
 
 Box around_segment(const Segment& s) {
   const auto [left, right] = std::minmax({s.a.real(), s.b.real()});

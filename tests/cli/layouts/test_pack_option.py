@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -30,17 +29,6 @@ def parts(tmp_path: Path) -> Path:
         positions = np.concatenate([positions, np.asarray(places, float) + np.array([5.0 * i, 0, 0])])
     (tmp_path / "parts.obj").write_text(obj_text(positions, faces))
     return tmp_path
-
-
-@pytest.fixture
-def packer() -> None:
-    pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
-
-
-@pytest.fixture
-def without_packer(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if it were not installed."""
-    monkeypatch.setitem(sys.modules, "xatlas", None)
 
 
 def layout(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -69,14 +57,14 @@ def test_doubled_faces_cover_their_place_once(lsgp, parts: Path) -> None:
     assert doubled["packing"]["coverage"] == pytest.approx(once, rel=0.1)  # other diagonals, hence other cones
 
 
-def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts: Path, packer) -> None:
+def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts: Path) -> None:
     for preset in ("paint", "bake"):
         shelves = lsgp(*UNWRAP, "--preset", preset, "--pack", "shelves").report()
         assert shelves["packing"]["packer"] == "shelves"
         done = lsgp(*UNWRAP, "--preset", preset, "--strict")
         assert (done.code, done.err) == (0, "")
         report = done.report()
-        assert report["packing"]["packer"].startswith("xatlas 0.")
+        assert report["packing"]["packer"] == "lsgp"
         triangles, uv, island = layout(parts / "out.obj")
         assert report["packing"]["coverage"] == pytest.approx(coverage(uv, island), rel=1e-4)
         assert report["packing"]["coverage"] > shelves["packing"]["coverage"]
@@ -91,7 +79,7 @@ def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts
 
 
 @pytest.mark.parametrize(("margin", "size"), [(4, None), (16, None), (1, 256), (0, 64), (None, 512)])
-def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, few_tries, margin, size) -> None:
+def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, few_tries, margin, size) -> None:
     options = [*(("--margin", margin) if margin is not None else ()), *(("--texture-size", size) if size else ())]
     done = lsgp(*BAKE, "--pack", "tight", *options)
     assert (done.code, done.err) == (0, "")
@@ -100,7 +88,7 @@ def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, few_t
     assert found.between >= 2 * wanted * texel - WRITTEN and found.border >= wanted * texel - WRITTEN
 
 
-def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, packer, few_tries) -> None:
+def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, few_tries) -> None:
     for density, outside in ((20, False), (200, True)):
         options = ("--texel-density", density, "--texture-size", 512, "--margin", 6)
         done = lsgp(*BAKE, "--pack", "tight", *options)
@@ -112,7 +100,7 @@ def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, par
 
 
 @pytest.mark.parametrize("options", [("--preset", "bake"), ("--overlaps", "split")])
-def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packer, few_tries, options) -> None:
+def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, few_tries, options) -> None:
     done = lsgp(*UNWRAP, *options, "--udim", 3, "--margin", 8, "--texture-size", 512)
     assert (done.code, done.err) == (0, "")
     triangles, uv, island = layout(parts / "out.obj")
@@ -131,29 +119,13 @@ def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packe
     assert plain.report()["packing"]["tiles"] == 1 and "UDIM" not in plain.out
 
 
-def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, packer, few_tries) -> None:
+def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, few_tries) -> None:
     assert lsgp(*UNWRAP).report()["packing"] is None
     plain = (parts / "out.obj").read_bytes()
     assert lsgp(*UNWRAP, "--pack", "shelves").report()["packing"]["packer"] == "shelves"
     assert (parts / "out.obj").read_bytes() == plain
     assert lsgp(*UNWRAP, "--overlaps", "split", "--pack", "tight").report()["packing"]["packer"] != "shelves"
     assert room(*layout(parts / "out.obj")).between >= 8 / 1024 - WRITTEN
-
-
-def test_without_the_packer_the_default_is_shelves_and_tight_is_refused(lsgp, parts: Path, without_packer) -> None:
-    done = lsgp(*BAKE)
-    assert done.code == 0 and done.report()["packing"]["packer"] == "shelves"
-    written = (parts / "out.obj").read_bytes()
-    assert lsgp(*BAKE, "--pack", "shelves").code == 0
-    assert (parts / "out.obj").read_bytes() == written
-    (parts / "out.obj").unlink()
-    for options in (("--pack", "tight"), ("--udim", 2)):
-        refused = lsgp(*BAKE, *options)
-        assert refused.code == 3 and "PACKER_NOT_INSTALLED" in refused.err and "pip install 'lsgp[pack]'" in refused.err
-        assert refused.report()["code"] == "PACKER_NOT_INSTALLED" and not (parts / "out.obj").exists()
-        batch = lsgp("batch", parts, "--out", parts.parent / "batch", *options)
-        assert batch.code == 2 and "PACKER_NOT_INSTALLED" in batch.err and "Traceback" not in batch.err
-        assert not (parts.parent / "batch").exists()
 
 
 def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
@@ -179,7 +151,7 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
         assert done.code == 2 and told in done.err, options
 
 
-def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer, few_tries) -> None:
+def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, few_tries) -> None:
     kite = np.array([[0, 0, 0], [2, 0, 0], [1.5, 1, 0], [0.25, 2, 0]])
     polygons = [kite, kite + np.array([8, 0, 0]), (kite * np.array([-1, 1, 1]))[[0, 3, 2, 1]] - np.array([8, 0, 0])]
     faces = [list(range(4 * i, 4 * i + 4)) for i in range(3)]
@@ -200,14 +172,14 @@ def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer, few_tr
         assert refused.code == 2 and "--stack is for" in refused.err
 
 
-def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, packer, few_tries) -> None:
+def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, few_tries) -> None:
     done = lsgp(*BAKE, "--pack", "tight", "--margin", 32, "--texture-size", 64)
     assert done.code == 2 and "no room" in done.err
     refused = lsgp(*BAKE, "--pack", "tight", "--margin", 30, "--texture-size", 64)
     assert refused.code == 3 and "smaller margin" in refused.err
 
 
-def test_a_batch_makes_the_bytes_of_single_runs(lsgp, parts: Path, packer) -> None:
+def test_a_batch_makes_the_bytes_of_single_runs(lsgp, parts: Path) -> None:
     options = ("--preset", "bake", "--pack", "tight", "--margin", 8)
     done = lsgp("batch", "parts.obj", "--out", "many", "--no-pictures", "--reports", *options)
     assert done.code == 0, done.err

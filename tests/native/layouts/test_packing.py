@@ -13,8 +13,8 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
 from island_gaps import least_gap
+from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
 from lsgp import TexelLayout, _lsgp
 from lsgp.layouts import packing
 from map_checks import codes, surface
