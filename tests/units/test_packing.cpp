@@ -123,6 +123,7 @@ TEST_CASE("the first free place is that which a look at every texel finds") {
     const Footprint footprint(shape.moved(1, {-box.left, -box.bottom}));
     const int last_row = static_cast<int>(100 - (box.top - box.bottom)) - 1;
     const int last_column = static_cast<int>(150 - (box.right - box.left)) - 1;
+    double looks = 0;
     for (int row = 0; row <= last_row; ++row) {
       int expected = -1;
       for (int column = 0; column <= last_column && expected < 0; ++column) {
@@ -132,7 +133,7 @@ TEST_CASE("the first free place is that which a look at every texel finds") {
         }
         if (is_free) expected = column;
       }
-      CHECK(taken.first_free(footprint, row, last_column, [](int) { return true; }) == expected);
+      CHECK(taken.first_free(footprint, row, last_column, [](int) { return true; }, looks) == expected);
     }
   }
 }

@@ -39,6 +39,9 @@ DEFAULT_MARGIN = 4 / 1024
 # Of the time of finding stacks and packing those that stay.
 _STACKING = 0.3
 
+# Of coordinates whose squares do not overflow.
+_MOST_EXPONENT = 300
+
 # What was packed, by digests of islands and how. None: nothing is kept.
 _kept: ContextVar[dict[tuple[object, ...], FloatArray] | None] = ContextVar("kept", default=None)
 
@@ -148,7 +151,7 @@ def pack_islands(
     locks: the islands that keep their "place", in which others leave them their margin, their "rotation" or their
         "scale", for instance {"place": [3, 5]}.
     snap: the side of square blocks in texture coordinates, such as 4 / 1024 for blocks of 4 texels in an image of 1024:
-        each island's box begins at the corner of a block, and no two islands share one.
+        each island's box begins at the corner of a block, and no two islands share one. At most 8192 fit side by side.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised.
     Raises InputError: WRONG_PARAMETER, also where margins leave no room, islands do not fit, or locked ones lie outside
     the area or overlap; it names them.
@@ -187,8 +190,16 @@ def _packed_at_unit_size(
 ) -> FloatArray:
     """uv scaled by a power of two, so that no square of a coordinate overflows or vanishes; no digit hangs on it."""
     fill = options["fill"]
-    is_bound = options["locks"].any() or (options["area"] is not None and not fill)
-    exponent = 0 if is_bound else unit_exponent(uv[solved], 0.0 if fill else options["margin"])
+    exponent = unit_exponent(uv[solved], 0.0 if fill else options["margin"])
+    # What keeps its place or size has to fit to the area.
+    if options["locks"][:, [0, 2]].any() or (options["area"] is not None and not fill):
+        if exponent > _MOST_EXPONENT:
+            raise InputError(
+                "WRONG_PARAMETER",
+                f"corner_uv holds numbers of about 2^{exponent}, far outside the area that islands are packed into. "
+                "Move or scale them to it.",
+            )
+        exponent = 0
     unit_uv = np.zeros_like(uv)
     unit_uv[solved] = np.ldexp(uv[solved], -exponent)
     lengths = {} if fill else {name: math.ldexp(options[name], -exponent) for name in ("margin", "snap")}

@@ -130,6 +130,8 @@ Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes) 
     const Array<Complex> hull =
         convex_hull(Eigen::Map<const Eigen::VectorXcd>(points.data(), static_cast<Eigen::Index>(points.size())));
     if (hull.size() > 1) within_quarter = {std::conj(longer_side(hull))};
+    // Of what is hardly longer than rounding.
+    if (!(std::abs(std::norm(within_quarter[0]) - 1) < same)) within_quarter[0] = 1;
     if (directions > 0) {
       Array<Complex> further;
       add_between(1, quarter_turned(1), directions, further);

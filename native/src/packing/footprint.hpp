@@ -36,17 +36,20 @@ class TakenTexels {
   void take(const Outline& outline, double reach);
 
   // The first column up to `last` in which a footprint is free in a row, looked for 64 columns at a time as long as
-  // goes_on(column) holds; -1 where there is none.
+  // goes_on(column) holds; -1 where there is none. looks: counts the spans that are looked up.
   template <typename GoesOn>
-  int first_free(const Footprint& footprint, int row, int last, GoesOn goes_on) const {
+  int first_free(const Footprint& footprint, int row, int last, GoesOn goes_on, double& looks) const {
     for (int column = 0; column <= last && goes_on(column); column += BitRows::word_bits) {
       BitRows::Word taken = 0;
+      int looked = 0;
       for (const Span& span : footprint.spans()) {
+        ++looked;
         const BitRows& any = levels_[span.level];
         taken |= any.from(row + span.row, column + span.begin);
         taken |= any.from(row + span.row, column + span.end - (1 << span.level));
         if (taken == BitRows::all_ones) break;
       }
+      looks += looked;
       if (taken == BitRows::all_ones) continue;
       while (taken & 1) {
         taken >>= 1;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <utility>
 
 #include "base/checkpoint.hpp"
@@ -20,10 +19,13 @@ namespace {
 
 // What of the area the first layout that is tried fills, and by how much its side grows until one is found.
 constexpr double first_fill = 0.65, growth = 1.02, failed_growth = 1.12;
+constexpr double room_to_grow = 1.7;
 constexpr int most_growths = 16;
 // Where so little of the area is filled, sides along the axes are given up for a layout whose side is so much shorter,
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
+// How long better orders are looked for at each effort, in about nanoseconds.
+constexpr double work_of_search[]{5e6, 3e8, 1e10};
 // By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
 constexpr double widened = 1e-9;
 // Outlines are simplified by so much of the side, and by this divided by the root of the number of bodies.
@@ -103,8 +105,7 @@ void LayoutSearch::rasterize(double side) {
 }
 
 Array<TileSpace> LayoutSearch::tiles(double side) const {
-  constexpr double room_to_grow = 1.7;
-  const double scale = (grows() ? room_to_grow * (options_.fill ? side : expected_side_) : options_.fill ? side : 1.0);
+  const double scale = options_.fill || grows() ? side : 1.0;
   const double width = (inside_.right - inside_.left) * scale - 2 * tolerance_;
   const double height = (inside_.top - inside_.bottom) * scale - 2 * tolerance_;
   Array<TileSpace> out(options_.tiles, {width / now_.texel, height / now_.texel, {}});
@@ -118,7 +119,8 @@ Array<TileSpace> LayoutSearch::tiles(double side) const {
   return out;
 }
 
-LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side) {
+// room: of the tile, in which bodies are placed, if these may take less of it or more.
+LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side, double room) {
   if (now_.poses.empty() || (sizes_depend_on_side() && now_.rasterized_for != side)) rasterize(side);
   ConstructionOptions how;
   how.gap = gap(side) / now_.texel;
@@ -127,7 +129,8 @@ LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side) {
   constexpr std::size_t few = 128;
   how.skips_full_rows = free_.size() > few;
   Attempt out;
-  out.found = construct(now_.poses, tiles(side), order.bodies, order.pose, how, true);
+  out.found = construct(now_.poses, tiles(grows() ? room * side : side), order.bodies, order.pose, how, true);
+  work_ += out.found.work;
   if (out.found.missing > 0) {
     out.side = side * failed_growth;
   } else if (grows()) {
@@ -151,13 +154,13 @@ bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
 }
 
 void LayoutSearch::find_first(const Order& order) {
-  double side = options_.fill ? expected_side_ : 1.0;
+  double side = options_.fill || grows() ? expected_side_ : 1.0;
   for (int i = 0; i < most_growths; ++i) {
-    Attempt found = attempt(order, side);
+    Attempt found = attempt(order, side, room_to_grow);
     const double needed = found.side;
     if (take_if_better(order, std::move(found))) return;
-    if (!options_.fill) break;
-    side = std::max(needed * growth, side * growth);
+    if (!options_.fill && !(grows() && found.found.missing > 0)) break;
+    side = std::max(needed, side) * growth;
   }
   refuse(order, side);
 }
@@ -184,41 +187,61 @@ void LayoutSearch::tighten() {
   }
 }
 
-void LayoutSearch::vary_order() {
-  using Clock = std::chrono::steady_clock;
+// The same layout with finer texels.
+void LayoutSearch::refine() {
+  if (sizes_depend_on_side()) return;
+  const State coarse = now_;
+  texels_ *= 2;
+  rasterize(now_.side);
+  if (!take_if_better(now_.order, attempt(now_.order, now_.side))) {
+    now_ = coarse;
+    texels_ /= 2;
+  }
+}
+
+// Another order: some bodies change places in it, are placed earlier or later, or in another pose.
+LayoutSearch::Order LayoutSearch::varied(const Order& order) {
+  Order out = order;
   const auto count = static_cast<int>(free_.size());
-  if (options_.effort == PackingEffort::quick || count == 0) return;
-  const bool is_best = options_.effort == PackingEffort::best;
-  const int tries = std::clamp((is_best ? 200000 : 8000) / count, is_best ? 100 : 8, is_best ? 5000 : 400);
-  const bool is_timed = is_best && options_.seconds.has_value();
+  for (int change = 1 + below(3); change > 0; --change) {
+    const int one = below(count), other = below(count);
+    const Index body = out.bodies[one];
+    switch (below(4)) {
+      case 0: std::swap(out.bodies[one], out.bodies[other]); break;
+      case 1:
+        out.bodies.erase(out.bodies.begin() + one);
+        out.bodies.insert(out.bodies.begin() + other, body);
+        break;
+      case 2: out.pose[body] = below(static_cast<int>(now_.poses[body].size())); break;
+      default: out.pose[body] = -1; break;
+    }
+  }
+  constexpr int seldom = 16;
+  if (below(seldom) == 0) out.rule = out.rule == PlaceRule::lowest ? PlaceRule::nearest_corner : PlaceRule::lowest;
+  return out;
+}
+
+void LayoutSearch::vary_order(double work) {
+  using Clock = std::chrono::steady_clock;
+  if (free_.size() < 2) return;  // all of its poses have been tried
+  const bool is_timed = options_.effort == PackingEffort::best && options_.seconds.has_value();
   const auto begin = Clock::now();
-  const auto done = [&](int number) {
-    if (!is_timed) return static_cast<double>(number) / tries;
+  const double work_before = work_;
+  const auto done = [&] {
+    if (!is_timed) return (work_ - work_before) / work;
     return std::chrono::duration<double>(Clock::now() - begin).count() / *options_.seconds;
   };
-  std::mt19937 random(0);
-  const auto below = [&](int most) { return static_cast<int>(random() % static_cast<std::uint32_t>(most)); };
   constexpr double smaller = 0.995;
-  for (int number = 0; done(number) < 1; ++number) {
-    monitor_.advance(done(number));
-    Order order = now_.order;
-    const int kind = below(4);
-    const int changes = 1 + below(3);
-    for (int change = 0; change < changes; ++change) {
-      const int one = below(count), other = below(count);
-      if (kind < 2) {
-        std::swap(order.bodies[one], order.bodies[other]);
-      } else if (kind == 2) {
-        const Index moved = order.bodies[one];
-        order.bodies.erase(order.bodies.begin() + one);
-        order.bodies.insert(order.bodies.begin() + other, moved);
-      } else {
-        const Index body = order.bodies[one];
-        order.pose[body] = below(3) == 0 ? -1 : below(static_cast<int>(now_.poses[body].size()));
-      }
+  for (double share = 0; share < 1; share = done()) {
+    monitor_.advance(share);
+    Order order = varied(now_.order);
+    Attempt found = attempt(order, grows() ? now_.side : now_.side * smaller);
+    for (const Index b : free_) order.pose[b] = found.found.placed[b].pose;
+    if (found.is_valid && found.side <= now_.side) {
+      now_.order = order;
+      now_.side = found.side;
+      now_.found = std::move(found.found);
     }
-    if (below(8) == 0) order.rule = order.rule == PlaceRule::lowest ? PlaceRule::nearest_corner : PlaceRule::lowest;
-    take_if_better(order, attempt(order, grows() ? now_.side : now_.side * smaller));
   }
 }
 
@@ -237,6 +260,7 @@ Array<Motion> LayoutSearch::best() {
                " of their distance from the origin, too small to place them in. Move them to the origin, or "
                "leave out those that are points."));
   }
+  if (options_.snap > 0) require_enough_blocks();
   if (options_.snap == 0) tolerance_ = expected_side_ * std::min(coarsest, coarsest_of_many / std::sqrt(count));
   for (const Body& body : bodies_)
     outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
@@ -254,10 +278,24 @@ Array<Motion> LayoutSearch::best() {
   return motions();
 }
 
+// Throws WRONG_PARAMETER where blocks are so small that a raster of them would not fit into memory, or so large that
+// the area has none.
+void LayoutSearch::require_enough_blocks() const {
+  constexpr double most_blocks = 1 << 13;
+  const double scale = has_area_ ? 1.0 : expected_side_;
+  const double width = (inside_.right - inside_.left) * scale, height = (inside_.top - inside_.bottom) * scale;
+  if (std::min(width, height) >= options_.snap && std::max(width, height) <= most_blocks * options_.snap) return;
+  throw Error(Code::wrong_parameter,
+              concat("snap is ", rounded(options_.snap), ", and the area inside the margins is ", rounded(width), " by ",
+                     rounded(height), "; pass the side of blocks of which it has one, and at most ", most_blocks,
+                     " on a side."));
+}
+
 void LayoutSearch::search() {
   find_first(by_size());
   tighten();
-  vary_order();
+  for (const Index b : free_) now_.order.pose[b] = now_.found.placed[b].pose;
+  vary_order(work_of_search[static_cast<std::size_t>(options_.effort)]);
 }
 
 // Whether other turns of bodies that lie along the axes may be worth it, as of long strips.
@@ -272,7 +310,9 @@ bool LayoutSearch::is_hardly_filled() const {
   return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
 }
 
-Array<Motion> LayoutSearch::motions() const {
+Array<Motion> LayoutSearch::motions() {
+  // The last attempt may have been at another side.
+  if (sizes_depend_on_side() && now_.rasterized_for != now_.side) rasterize(now_.side);
   Array<Motion> out(bodies_.size());
   Array<Outline> moved;
   Box all{1e300, -1e300, 1e300, -1e300};

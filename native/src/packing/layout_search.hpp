@@ -2,6 +2,9 @@
 // The best layout of bodies: the scale at which they fill a rectangle, and the order in which they are placed.
 #pragma once
 
+#include <cstdint>
+#include <random>
+
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "packing/body.hpp"
@@ -54,14 +57,18 @@ class LayoutSearch {
   Order by_size() const;
   void rasterize(double side);
   Array<TileSpace> tiles(double side) const;
-  Attempt attempt(const Order& order, double side);
+  Attempt attempt(const Order& order, double side, double room = 1);
   bool take_if_better(const Order& order, Attempt attempt);
   void search();
   bool is_hardly_filled() const;
+  void require_enough_blocks() const;
   void find_first(const Order& order);
   void tighten();
-  void vary_order();
-  Array<Motion> motions() const;
+  void refine();
+  void vary_order(double work);
+  Order varied(const Order& order);
+  int below(int most) { return static_cast<int>(random_() % static_cast<std::uint32_t>(most)); }
+  Array<Motion> motions();
   [[noreturn]] void refuse(const Order& order, double side);
 
   const Array<Body>& bodies_;
@@ -80,6 +87,8 @@ class LayoutSearch {
   int texels_ = 0;  // of the expected side
 
   State now_;
+  double work_ = 0;  // done so far, as of `Constructed`
+  std::mt19937 random_;
 };
 
 }  // namespace lsgp

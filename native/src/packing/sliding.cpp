@@ -79,7 +79,7 @@ void StillOutlines::add(Outline outline) {
   seen_.push_back(-1);
 }
 
-double StillOutlines::free_way(const Outline& moving, Axis axis, double gap, double limit) const {
+double StillOutlines::free_way(const Outline& moving, Axis axis, double gap, double limit, double& looks) const {
   Box swept = moving.box();
   swept = {swept.left - gap, swept.right + gap, swept.bottom - gap, swept.top + gap};
   (axis == Axis::u ? swept.left : swept.bottom) -= limit;
@@ -110,6 +110,7 @@ double StillOutlines::free_way(const Outline& moving, Axis axis, double gap, dou
                                   {-head.real(), head.imag()}, gap, least);
       }
     }
+    looks += static_cast<double>(near.size());
     checkpoint(operations_a_pair * static_cast<double>(near.size()));
   });
   return least;

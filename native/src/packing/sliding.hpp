@@ -22,7 +22,8 @@ class StillOutlines {
   void add(Outline outline);
 
   // How far an outline can be moved against an axis so that it keeps a gap to all others; at most `limit`.
-  double free_way(const Outline& moving, Axis axis, double gap, double limit) const;
+  // looks: counts the pairs of segments that are looked at.
+  double free_way(const Outline& moving, Axis axis, double gap, double limit, double& looks) const;
 
  private:
   template <typename Visit>
