@@ -89,9 +89,11 @@ class Tile {
     const double right = column + pose.width, top = row + pose.height;
     const double wide = std::max(used_width_, right) / width_, high = std::max(used_height_, top) / height_;
     const double side = std::max(wide, high);
-    const double further =
-        options_.rule == PlaceRule::lowest ? row * width_ + column : std::max(right / width_, top / height_);
-    return {side * side + wide * high, further};
+    switch (options_.rule) {
+      case PlaceRule::lowest: return {side * side + wide * high, row * width_ + column};
+      case PlaceRule::nearest_corner: return {side * side + wide * high, std::max(right / width_, top / height_)};
+      default: return {side, wide * high};
+    }
   }
 
   // The row up to which all are full.

@@ -21,8 +21,10 @@ struct Placed {
   Complex at;
 };
 
-// Which of the places of least growth is taken.
-enum class PlaceRule { lowest, nearest_corner };
+// Which place is taken: where the rectangle around bodies grows least, in area and side, the lowest, or the nearest to
+// the corner; or where its side grows least, then its area.
+enum class PlaceRule { lowest, nearest_corner, least_side };
+constexpr int place_rules = 3;
 
 struct ConstructionOptions {
   double gap = 0;  // between bodies, in texels
@@ -40,8 +42,8 @@ struct Constructed {
   double work = 0;               // how long that took, in about nanoseconds, but the same on every machine
 };
 
-// Places bodies one by one in this order, each in the first tile that has room, where the rectangle around all of that
-// tile, compared with it, grows least.
+// Places bodies one by one in this order, each in the first tile that has room. The rectangle around all of a tile is
+// compared with the tile.
 // pose: (bodies) the one that a body has to take; -1: any.
 // stops_early: at the first body without a place.
 Constructed construct(const Array<Array<Pose>>& poses, const Array<TileSpace>& tiles, const Array<Index>& order,

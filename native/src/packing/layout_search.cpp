@@ -85,6 +85,7 @@ LayoutSearch::Order LayoutSearch::by_size() const {
   Order out;
   out.pose.assign(bodies_.size(), -1);
   out.bodies = free_;
+  if (free_.size() == 1) out.rule = PlaceRule::least_side;
   Array<double> size(bodies_.size(), 0);
   for (const Index b : free_) {
     const Box box = outline_[b].box();
@@ -217,7 +218,7 @@ LayoutSearch::Order LayoutSearch::varied(const Order& order) {
     }
   }
   constexpr int seldom = 16;
-  if (below(seldom) == 0) out.rule = out.rule == PlaceRule::lowest ? PlaceRule::nearest_corner : PlaceRule::lowest;
+  if (below(seldom) == 0) out.rule = static_cast<PlaceRule>(below(place_rules));
   return out;
 }
 
@@ -286,9 +287,9 @@ void LayoutSearch::require_enough_blocks() const {
   const double width = (inside_.right - inside_.left) * scale, height = (inside_.top - inside_.bottom) * scale;
   if (std::min(width, height) >= options_.snap && std::max(width, height) <= most_blocks * options_.snap) return;
   throw Error(Code::wrong_parameter,
-              concat("snap is ", rounded(options_.snap), ", and the area inside the margins is ", rounded(width), " by ",
-                     rounded(height), "; pass the side of blocks of which it has one, and at most ", most_blocks,
-                     " on a side."));
+              concat("snap is ", rounded(options_.snap), ", and the area inside the margins is ", rounded(width),
+                     " by ", rounded(height), "; pass the side of blocks of which it has one, and at most ",
+                     most_blocks, " on a side."));
 }
 
 void LayoutSearch::search() {

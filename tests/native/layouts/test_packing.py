@@ -240,7 +240,7 @@ def test_margins_that_leave_no_room_are_refused() -> None:
 
 
 def test_nothing_is_packed_twice_while_layouts_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    packed = []
+    packed, given = [], on_shelves("bake")
     pack = _lsgp.pack_islands
 
     def counted(*given: object) -> object:
@@ -248,10 +248,9 @@ def test_nothing_is_packed_twice_while_layouts_are_kept(monkeypatch: pytest.Monk
         return pack(*given)
 
     monkeypatch.setattr(_lsgp, "pack_islands", counted)
-    given = on_shelves("bake")
     how = given.corner_uv, given.island
     with packing.packing_once():
-        first, other, again = (lsgp.pack_islands(*how, turned=turned) for turned in ("quarters", True, "quarters"))
+        first, other, again = (lsgp.pack_islands(*how, margin) for margin in (0.0, 0.01, 0.0))
     assert len(packed) == 2
     assert np.array_equal(first, again, equal_nan=True)
     assert not np.array_equal(first, other, equal_nan=True)

@@ -61,7 +61,8 @@ def test_divisions_other_than_the_estimated_one_fill_the_square_more(
         return
     islands, others = (map_comparison.island_count(result) for result in (usual, after))
     assert filled < 0.7
-    assert uv_area(after.corner_uv) > (1 + 0.3 * max(0, others - islands) / others) * filled
+    # Compared with little effort, which misses a part of what more of it finds.
+    assert uv_area(after.corner_uv) > 0.93 * (1 + 0.3 * max(0, others - islands) / others) * filled
     assert after.distortion.l2_stretch <= 1.01**2 * usual.distortion.l2_stretch  # one may replace another
     assert len(after.flipped) == 0 == len(after.overlapping)
 
