@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from nightly import nightly
 
 TESTS = Path(__file__).parents[1]
 
@@ -60,10 +61,12 @@ except KeyboardInterrupt:
     print(time.process_time() - sent[0])
 """
 VERBS = ["parameterize", "seamless", "split", "low stretch", "spectral", "solver", "place", "gains", "cuts", "angles"]
+HOW = ("alone", "told")
+# Every other one is each verb once.
+CASES = [(verb, HOW[(i + j) % 2]) for i, verb in enumerate([*VERBS, "measure"]) for j in range(2)]
 
 
-@pytest.mark.parametrize("callback", ["alone", "told"])
-@pytest.mark.parametrize("verb", [*VERBS, "measure"])
+@pytest.mark.parametrize(("verb", "callback"), [*CASES[::2], *nightly(*CASES[1::2])])
 def test_ctrl_c_is_answered(verb: str, callback: str) -> None:
     command = [sys.executable, "-c", PROGRAM, verb, callback]
     paths = os.pathsep.join([str(TESTS), *filter(None, [os.environ.get("PYTHONPATH")])])

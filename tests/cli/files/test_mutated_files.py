@@ -21,10 +21,11 @@ from gltf_files import content_of, scene
 from lsgp.cli import main
 from lsgp.errors import InputError
 from lsgp.io.mesh_files import read_mesh, read_mesh_file, write_mesh_file
+from nightly import EVERYTHING
 from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text, off_text, patch, ply_bytes, stl_files
 
 RESULT, USAGE, REFUSED, INCOMPLETE = 0, 2, 3, 4
-SEEDS, MANY_SEEDS = 60, 100
+SEEDS, MANY_SEEDS = (60, 100) if EVERYTHING else (20, 40)
 # What reading and writing may end with.
 REFUSALS = {"MALFORMED_FILE", "INDEX_OUT_OF_RANGE", "BAD_FACE", "WRONG_PARAMETER", "EMPTY_MESH"}
 

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsgp.io.mesh_obj import read_obj
 from lsgp.io.mesh_obj_edit import edit_obj
+from nightly import EVERYTHING
 from polygon_meshes import cube, faces_of, obj_text
 from systems import is_wine
 
@@ -227,7 +228,7 @@ def other_lines(data: bytes) -> list[bytes]:
     return kept
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500 if EVERYTHING else 150, deadline=None)
 @given(obj_files(), st.data())
 def test_random_files_differ_in_nothing_but_texture_coordinates(made: tuple[bytes, int], data: st.DataObject) -> None:
     before, faces = made

@@ -13,6 +13,7 @@ from hulls import hull
 from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
+from nightly import nightly
 from result_check import undeclared_faults
 from sanitized_run import many_solves
 from zoo import closed, swept, tunnels
@@ -408,8 +409,10 @@ def test_what_is_round_itself_has_no_bevels() -> None:
         assert len(lsgp.crease_borders(surface(mesh))) == 0
 
 
-@pytest.mark.parametrize("gap", [0.0, pytest.param(1e-7, marks=pytest.mark.many_solves)])
-@pytest.mark.parametrize("name", [*many_solves("star"), "cube", "plate with tunnels", "slab of genus 2"])
+@pytest.mark.parametrize("gap", [0.0, *nightly(1e-7, marks=[pytest.mark.many_solves])])
+@pytest.mark.parametrize(
+    "name", ["cube", "plate with tunnels", "slab of genus 2", *nightly("star", marks=[pytest.mark.many_solves])]
+)
 def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
     for seed in range(3):
         mesh = with_slivers(SOLIDS[name], 6, gap, seed)
@@ -428,7 +431,7 @@ def test_rounding_does_not_choose_the_borders_of_regular_outlines(mesh: Mesh) ->
         assert pairs(lsgp.crease_borders(surface(moved))) == expected
 
 
-@pytest.mark.parametrize("points", [8, *many_solves(12, 24)])
+@pytest.mark.parametrize("points", [8, *many_solves(12), *nightly(24, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])
 def test_sides_of_extruded_outlines_become_bands(points: int, inner: float, height: float) -> None:

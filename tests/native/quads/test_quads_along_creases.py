@@ -203,12 +203,13 @@ def test_without_straight_sides_creases_are_not_followed() -> None:
     assert carried_share(turned, found.mesh) < 0.9
 
 
-@pytest.mark.parametrize("target", [400, pytest.param(2000, marks=pytest.mark.many_solves)])
+@pytest.mark.parametrize("target", [400, *nightly(2000, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize(
     "name",
     [
         "gear of 5 teeth",
-        *many_solves("gear of 7 teeth", "joint", "spool"),
+        *many_solves("spool"),
+        *nightly("gear of 7 teeth", "joint", marks=[pytest.mark.many_solves]),
     ],
 )
 def test_creases_cost_stretch_by_the_share_that_is_followed(name: str, target: int) -> None:

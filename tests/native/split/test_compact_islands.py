@@ -206,7 +206,7 @@ COARSE = {
 }
 
 
-@pytest.mark.parametrize("seed", [0, *many_solves(1, 2, 3)])
+@pytest.mark.parametrize("seed", [0, *many_solves(1), *nightly(2, 3, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize("name", COARSE)
 def test_no_scraps_are_cut_off_coarse_round_shapes(name: str, seed: int) -> None:
     mesh = meshes.transform(COARSE[name], seed)
@@ -263,11 +263,14 @@ def test_faces_of_polygons_are_not_cut() -> None:
         *many_solves(
             "pipe-around=8-along=10-bend=1.5-caps=True",
             "tunneled-plate-across=2-along=1-thickness=1",
+        ),
+        *nightly(
             "mixed-parts-count=5-spread=2-seed=0",
             "scale-shape=ball-exponent=-6",
             "bumpy-ball-levels=1-height=0.25",
             "box-cells=3-size=1x10x1",
             "polygon-box-cells=3-size=1x1x1",
+            marks=[pytest.mark.many_solves],
         ),
     ],
 )

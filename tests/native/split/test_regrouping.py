@@ -51,6 +51,7 @@ def test_regrouped_pieces_are_the_same_map(seed: int) -> None:
     assert pairs(result.required_cuts) <= pairs(result.cut_edges)
 
 
+@pytest.mark.nightly
 @pytest.mark.many_solves
 def test_bodies_with_limbs_come_apart_in_few_islands() -> None:
     """By splitting and merging whole islands alone they have 43."""
