@@ -61,6 +61,7 @@ def by_name(records: list[Record]) -> dict[str, tuple[str, str | None]]:
     return found
 
 
+@pytest.mark.slow
 def test_a_crash_costs_one_asset_and_is_named(tmp_path: Path) -> None:
     good = [f"good {i}" for i in range(12)]
     records = run_pool(tmp_path, [*good, "segfault", "kill", "exit", "fault", "chatty"])
@@ -75,6 +76,7 @@ def test_a_crash_costs_one_asset_and_is_named(tmp_path: Path) -> None:
     assert "ZeroDivisionError: by nought" in said["fault.off"]
 
 
+@pytest.mark.slow
 def test_every_asset_crashing_is_told_of_every_asset(tmp_path: Path) -> None:
     names = [f"segfault {i}" for i in range(6)]
     assert by_name(run_pool(tmp_path, names)) == dict.fromkeys(names, ("failed", "CRASHED"))
@@ -101,6 +103,7 @@ def test_too_little_memory_costs_one_asset(tmp_path: Path) -> None:
     assert ended == dict.fromkeys(["small", "smaller"], ("ok", None))
 
 
+@pytest.mark.slow
 def test_workers_are_renewed(tmp_path: Path) -> None:
     names = [f"good {i:02}" for i in range(10)]
     records = run_pool(tmp_path, names, jobs=1, assets_per_worker=3)
@@ -109,6 +112,7 @@ def test_workers_are_renewed(tmp_path: Path) -> None:
     assert len(per_worker) > 1
 
 
+@pytest.mark.slow
 def test_workers_that_do_not_start_end_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -133,6 +137,7 @@ def test_workers_end_with_the_run(tmp_path: Path) -> None:
     assert not is_running(int(host_and_pid[1]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stopped", ["killed", "interrupted"])
 def test_workers_of_a_run_that_is_stopped_end_too(tmp_path: Path, stopped: str) -> None:
     """Also in the middle of an asset, whose result is not needed any more."""

@@ -32,6 +32,7 @@ def content(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*.obj*")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("out", ["assets", "link", "assets/../assets"])
 def test_results_over_the_assets_take_an_option(batch, assets: Path, out: str) -> None:
     if out == "link":

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from batch_meshes import off_text
 from meshes import bumpy_sphere, moebius_strip, renumber
+from nightly import nightly
 
 COUNT = 24
 
@@ -29,7 +30,8 @@ def results(out: Path) -> dict[str, tuple[int, bytes]]:
     return {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.glob("*.obj")}
 
 
-@pytest.mark.parametrize("lines", [0, 1, 9, COUNT - 1])
+@pytest.mark.slow
+@pytest.mark.parametrize("lines", [0, 9, *nightly(1, COUNT - 1)])
 def test_killed_after_so_many_lines(batch, lines_in, many: Path, lines: int) -> None:
     out = many.parent / "out"
     journal = out / "journal.jsonl"

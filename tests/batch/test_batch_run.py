@@ -27,6 +27,7 @@ def files_in(folder: Path, suffix: str) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob(f"*{suffix}")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [
@@ -58,6 +59,7 @@ def test_same_bytes_as_single_runs_and_a_line_an_asset(batch, lines_in, library:
     assert not list(out.rglob("*.partial"))
 
 
+@pytest.mark.slow
 def test_exit_codes_of_all_some_and_none(batch, library: Path) -> None:
     for name, listed, code in (
         ("all", RESULTS, 0),
@@ -118,6 +120,7 @@ def test_wrong_usage_ends_with_2_before_any_work(
     assert not list(Path("out").glob("journal*"))
 
 
+@pytest.mark.slow
 def test_file_that_is_missing_is_told_and_tried_again(batch, lines_in, library: Path) -> None:
     (library / "list.txt").write_text("patch.off\nlate.off\n")
     assert batch("library/list.txt", "--out", "out").returncode == 4
@@ -130,6 +133,7 @@ def test_file_that_is_missing_is_told_and_tried_again(batch, lines_in, library: 
     assert [line["asset"] for line in lines_in(journal)].count("patch.off") == 1
 
 
+@pytest.mark.slow
 def test_only_missing_does_what_has_no_result(batch, lines_in, library: Path) -> None:
     assert batch("library", "--out", "out").returncode == 4
     journal = library.parent / "out" / "journal.jsonl"

@@ -43,6 +43,7 @@ def test_blocks_say_what_they_are_and_why_they_are_left_out(document):
     assert prose == [], "code is put between fences, where this test sees it"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("document", documents(), ids=names(documents()))
 def test_blocks_run_and_print_what_is_shown(document, tmp_path):
     shutil.copy(MODEL, tmp_path)

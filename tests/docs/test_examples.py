@@ -22,6 +22,7 @@ def test_best_map_is_written(tmp_path):
     assert (tmp_path / "best.obj").read_text().count("\nvt ") > 800
 
 
+@pytest.mark.slow
 def test_mypy_accepts_them(tmp_path):
     pytest.importorskip("mypy", reason="takes mypy")
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", ROOT / "build" / "mypy", *PROGRAMS]
@@ -29,6 +30,7 @@ def test_mypy_accepts_them(tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_pyright_accepts_them(tmp_path):
     if importlib.util.find_spec("basedpyright") is None:
         pytest.skip("takes basedpyright")

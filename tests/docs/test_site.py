@@ -17,6 +17,7 @@ PUBLIC_HEADERS = sorted(path.stem for path in HEADERS.glob("*.hpp") if path.stem
 needs_doxygen = pytest.mark.skipif(not cpp_reference.is_possible(), reason="takes doxygen")
 
 
+@pytest.mark.slow
 @needs_doxygen
 def test_site_builds_without_a_warning(tmp_path):
     pytest.importorskip("material", reason="takes mkdocs-material")

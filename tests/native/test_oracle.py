@@ -89,6 +89,7 @@ def test_both_eigensolvers_agree() -> None:
 PUBLISHED = {"fandisk": (1.015, 1.093, 1.038), "bird": (1.023, 1.203, 1.097), "igea-16k": (1.041, 1.136, 1.061)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_oracle_repeats_the_published_figures(name: str) -> None:
     mesh = shared_mesh(name)

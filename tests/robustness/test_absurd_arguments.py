@@ -110,6 +110,7 @@ def test_all_public_functions_and_parameters_are_listed() -> None:
         function(**accepted)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "parameter"), PARAMETERS)
 def test_absurd_values_are_refused_by_name(name: str, parameter: str) -> None:
     for absurd in [*NUMBERS, *OBJECTS]:
@@ -125,6 +126,7 @@ ARRAYS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "parameter"), ARRAYS)
 def test_other_arrays_are_refused_by_name(name: str, parameter: str) -> None:
     """Of all types, shapes, lengths and layouts in memory, with the extremes of their type in places."""
@@ -147,6 +149,7 @@ def test_absurd_elements_are_refused_by_name(where: tuple[str, str], absurd: Any
     require_a_result_or_a_refusal(name, parameter, ways[way % len(ways)](absurd))
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(
     st.sampled_from(PARAMETERS),

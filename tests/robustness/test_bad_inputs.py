@@ -149,6 +149,7 @@ def test_through_the_api(name: str) -> None:
     assert seconds < SECONDS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", case_names())
 def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     """The same end as through the API, with the same coordinates."""

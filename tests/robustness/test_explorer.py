@@ -35,6 +35,7 @@ def host() -> Iterator[Host]:
         yield one
 
 
+@pytest.mark.slow
 def test_sessions_from_seeds(meshes: list[str]) -> None:
     explorer = Explorer(Journal(), meshes, list(RULES), SECONDS)
     explorer.run(STEPS, 0, 1)
@@ -101,6 +102,7 @@ def test_a_failure_is_shortened_to_the_steps_it_needs(meshes: list[str]) -> None
     assert failure.alone and failure.steps == [bad]
 
 
+@pytest.mark.slow
 def test_exploring_goes_on_where_it_was(tmp_path: object, meshes: list[str]) -> None:
     rules = ["choose options", "find cuts"]
     for steps in (40, 80):

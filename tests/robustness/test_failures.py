@@ -231,6 +231,7 @@ def test_parts_far_from_each_other_are_no_far_vertices(distance: float) -> None:
 
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer reserves terabytes")
 class TestMemory:
+    @pytest.mark.slow
     @pytest.mark.parametrize("percent", [25, 60, *nightly(10, 40, 50, 75, 90)])
     @pytest.mark.parametrize(
         "call",
@@ -266,6 +267,7 @@ class TestMemory:
         first, *_, last = run_child("again", 0)["ended"]
         assert last < first / 10
 
+    @pytest.mark.slow
     def test_it_is_estimated_before_it_is_taken(self) -> None:
         whole = peak("fine")
         assert run_child("fine", whole * 5 // 4)["ended"] == "result"
@@ -276,6 +278,7 @@ class TestMemory:
         # The factor was asked for while the surface was all there was.
         assert found["grown"] <= 0.5 * whole and 0.4 * whole <= needed <= whole
 
+    @pytest.mark.slow
     def test_quads_are_counted_before_they_are_made(self) -> None:
         whole = peak("quads")
         found = run_child("quads", whole // 2)
@@ -284,6 +287,7 @@ class TestMemory:
         assert code == "OUT_OF_MEMORY" and needed > left and "larger quads" in message
         assert found["grown"] <= 0.1 * whole and 0.5 * whole <= needed <= 1.5 * whole
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("percent", [25, 50, 75])
     def test_the_command_line_refuses_and_writes_nothing(self, tmp_path: Path, percent: int) -> None:
         mesh = meshes.bumpy_sphere(5)

@@ -132,6 +132,7 @@ def test_the_turning_of_a_loop_at_no_vertex(vertex: int) -> None:
     assert caught.value.code == "LOOP_TURNING" and caught.value.elements.indices.size == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", [b"\\", b"# \\", b" \\\n\\", b"f 1 2 3\n\\\n\\\n"])
 def test_lines_of_an_obj_that_hold_a_backslash_alone(tmp_path: Path, line: bytes) -> None:
     text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + line

@@ -61,6 +61,7 @@ def in_its_own_process(cell: Cell) -> Measured:
     return Measured(**json.loads(done.stdout))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cell", CELLS, ids=lambda cell: "-".join(map(str, cell)))
 def test_a_call_is_heard_of_and_hears_within_a_second(cell: Cell) -> None:
     found = in_its_own_process(cell)

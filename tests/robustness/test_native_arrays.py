@@ -120,6 +120,7 @@ def test_all_functions_are_listed() -> None:
     assert found - {"GrabbedCut"} == FUNCTIONS.keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_arrays_are_taken_or_refused(name: str) -> None:
     function, accepted = FUNCTIONS[name]

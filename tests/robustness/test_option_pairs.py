@@ -130,6 +130,7 @@ def test_pairs_are_of_all_options() -> None:
     assert parameters == set(PLACEMENT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(len(ROWS)))
 def test_row_of_options(number: int) -> None:
     row = ROWS[number]
@@ -142,6 +143,7 @@ def test_row_of_options(number: int) -> None:
     assert world.perform({"do": call})[1] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(len(PLACING_ROWS)))
 def test_row_of_placement(number: int) -> None:
     row = PLACING_ROWS[number]

@@ -88,6 +88,7 @@ def test_a_run_that_is_watched_gives_the_same_bytes(run: Run) -> None:
     assert digest(run(lambda done: None)) == digest(run())
 
 
+@pytest.mark.slow
 def test_a_run_stopped_at_any_time_leaves_no_trace(run: Run) -> None:
     plain, told = digest(run()), told_by(run)
     for call in range(len(told)):
@@ -104,6 +105,7 @@ class Pressed(BaseException):
     """Not an Exception, as KeyboardInterrupt is none."""
 
 
+@pytest.mark.slow
 def test_what_progress_raises_comes_through_as_it_is(run: Run) -> None:
     require_passed_through(run, ValueError)
 
@@ -206,6 +208,7 @@ LONG = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_nightly(LONG, "place many"))
 def test_long_work_is_told_of_often_and_stops_at_once(name: str) -> None:
     least, run = LONG[name]

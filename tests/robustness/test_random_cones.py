@@ -128,6 +128,7 @@ def test_every_mesh_is_selected() -> None:
     assert set(SELECTED) >= set(mesh_names())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed", "angles"), selected())
 def test_no_set_of_cones_gives_a_map_with_a_hidden_defect(name: str, seed: int, angles: str) -> None:
     ended, faults = attempt(name, seed, angles)

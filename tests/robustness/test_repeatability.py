@@ -59,6 +59,7 @@ def fail() -> None:
         unwrap(broken, unfold="spectral")
 
 
+@pytest.mark.slow
 def test_the_fiftieth_run_and_failures_between() -> None:
     first = answers()
     for _ in range(RUNS - 1):
@@ -90,6 +91,7 @@ def test_threads_at_once(count: int) -> None:
 PRINT_ANSWERS = "import json, test_repeatability as t; print(json.dumps(t.answers()))"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("threads", ["1", "2", "4"])
 def test_processes_with_any_number_of_threads(threads: str) -> None:
     numbers = {name: threads for name in ("LSGP_THREADS", "OPENBLAS_NUM_THREADS")}
@@ -116,6 +118,7 @@ def decimal_comma(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return environment
 
 
+@pytest.mark.slow
 def test_a_locale_with_decimal_commas(decimal_comma: dict[str, str]) -> None:
     script = SET_LOCALE + "assert locale.str(0.5) == '0,5'\n" + PRINT_ANSWERS
     assert json.loads(in_another_process(script, **decimal_comma)) == answers()

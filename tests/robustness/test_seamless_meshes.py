@@ -94,6 +94,7 @@ def selected() -> list[tuple[str, float]]:
     return [(name, tiles) for name in SELECTED for tiles in (TILES if EVERYTHING else SELECTED[name])]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "tiles"), selected())
 def test_every_grid_is_exact_or_refused(name: str, tiles: float) -> None:
     found = attempt(name, tiles)
@@ -112,6 +113,7 @@ def test_every_grid_is_exact_or_refused(name: str, tiles: float) -> None:
     assert tiles == AUTOMATIC or (report.tiles != tiles) == any(w.code == "GRID_REFINED" for w in found.result.warnings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lattice", ["stripe", "triangle", "hexagon"])
 @pytest.mark.parametrize("name", ["octa-flower", "hand-5k", "eight-genus2"])
 def test_other_lattices(name: str, lattice: str) -> None:

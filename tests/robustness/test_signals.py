@@ -66,6 +66,7 @@ HOW = ("alone", "told")
 CASES = [(verb, HOW[(i + j) % 2]) for i, verb in enumerate([*VERBS, "measure"]) for j in range(2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("verb", "callback"), [*CASES[::2], *nightly(*CASES[1::2])])
 def test_ctrl_c_is_answered(verb: str, callback: str) -> None:
     command = [sys.executable, "-c", PROGRAM, verb, callback]

@@ -39,6 +39,7 @@ def require_sound(member: zoo.Member) -> None:
     assert result.solved.all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ORDINARY)
 def test_an_ordinary_mesh_has_a_map(name: str) -> None:
     require_sound(SMALL[name])
@@ -50,6 +51,7 @@ def test_a_large_mesh_has_a_map(name: str) -> None:
     require_sound(zoo.member(name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_broken_mesh_has_an_honest_end(name: str) -> None:
     mesh = SMALL[name].mesh()

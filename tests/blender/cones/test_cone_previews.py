@@ -64,6 +64,7 @@ def difference(one, other):
     return np.median(np.linalg.norm(one - other, axis=-1)) / np.ptp(other.reshape(-1, 2), axis=0).max()
 
 
+@pytest.mark.slow
 def test_a_dragged_cone_has_previews_and_a_released_one_the_exact_map(ball, maps):
     session = begin(ball)
     assert len(session.region.surface.triangles) >= cone_session.PREVIEWED

@@ -622,6 +622,7 @@ def test_islands_that_came_to_lie_on_others_are_packed():
     assert overlap == 0 and is_in_tile(uv_map.uv)
 
 
+@pytest.mark.slow
 def test_islands_that_lay_on_each_other_stay_so():
     """Both are in the middle of the square, where edited islands would be placed."""
     overlap, uv_map = overlap_after(placed((0.5, 0.5), (0.5, 0.5)), PACKED)

@@ -153,6 +153,7 @@ def require_a_word(operator: str, how: str, printed: Callable[[], tuple[str, str
     assert ended == {"FINISHED"} or said or reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("context", CONTEXTS)
 @pytest.mark.parametrize("operator", OPERATORS)
 def test_an_operator_runs_or_says_why_not(operator: str, context: str, printed: Callable[[], tuple[str, str]]) -> None:

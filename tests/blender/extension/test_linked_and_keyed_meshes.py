@@ -52,6 +52,7 @@ def local_with_a_linked_mesh(folder: Path) -> bpy.types.Object:
     return shown(bpy.data.objects.new("Local", mesh))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("build", [linked, overridden, overridden_with_its_mesh, local_with_a_linked_mesh])
 @pytest.mark.parametrize("operator", sorted(IN_OBJECT_MODE.keys() - {"get density", "select row"}))
 def test_meshes_of_other_files_are_refused_with_the_reason(
@@ -103,6 +104,7 @@ def test_shape_keys_stay_in_object_mode(operator: str, tmp_path: Path) -> None:
     assert bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True) == {"FINISHED"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("operator", IN_EDIT_MODE)
 def test_shape_keys_stay_in_edit_mode(operator: str, tmp_path: Path) -> None:
     ball = with_keys()

@@ -30,6 +30,7 @@ def values(properties):
     return {name: getattr(properties, name) for name in {*properties.bl_rna.properties.keys()} - {"rna_type"}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_preset_does_not_depend_on_what_was_set_before(preset):
     operator = preset.partition("/")[0]

@@ -55,6 +55,7 @@ def test_only_the_active_uv_layer_changes(in_edit_mode, preset):
     assert changed(once, snapshot(sphere)) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("add", [add_cube, add_grid, *one_blender(add_sphere, add_ramp, add_ball)])
 @pytest.mark.parametrize("preset", PRESETS)
 def test_nothing_overlaps_and_all_is_even_or_seamless(preset, add):
@@ -401,6 +402,7 @@ def test_an_island_that_is_alone_is_turned_on_its_image():
     assert np.ptp(UvMap(grid).uv, axis=0) == pytest.approx([1.0, 1.0], abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.one_blender
 def test_cuts_keep_out_of_sight_from_the_front():
     bpy.ops.mesh.primitive_monkey_add()

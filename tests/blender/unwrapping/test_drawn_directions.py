@@ -213,6 +213,7 @@ def drawn_around(obj):
     return up
 
 
+@pytest.mark.slow
 @pytest.mark.one_blender
 @pytest.mark.parametrize("seamless", [False, True])
 def test_what_the_map_misses_is_told_at_each_face(seamless):

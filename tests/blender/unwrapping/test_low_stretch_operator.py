@@ -36,6 +36,7 @@ def test_suzanne_is_stretched_less_and_cuts_stay_exact(suzanne):
     assert low.islands() == 3
 
 
+@pytest.mark.slow
 @pytest.mark.one_blender
 def test_the_slider_leads_from_the_conformal_map_to_the_least_stretch(suzanne):
     conformal = unwrap(suzanne, overlaps="KEEP").l2_stretch()
@@ -46,6 +47,7 @@ def test_the_slider_leads_from_the_conformal_map_to_the_least_stretch(suzanne):
     assert stretches[-1] < stretches[0] - 0.005
 
 
+@pytest.mark.slow
 @pytest.mark.one_blender
 @pytest.mark.parametrize("in_edit_mode", [True, False])
 def test_stretch_is_lowest_where_importance_is_high(suzanne, in_edit_mode):

@@ -402,6 +402,7 @@ def test_packed_islands_keep_their_shape_and_their_seams(in_edit_mode, sync):
     assert active_uv(obj).tobytes() == packed.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["SCALED", "ADD", "FRACTION"])
 def test_a_wider_margin_makes_smaller_islands(method):
     obj = add_grid("Parts", segments=2)

@@ -22,6 +22,7 @@ def add_primitive(name):
     return bpy.context.object
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("in_edit_mode", [True, False])
 @pytest.mark.parametrize("primitive", [*PRIMITIVES, "triangle"])
 def test_primitive_through_placed_cones_twice_in_a_row(primitive, in_edit_mode):
@@ -42,6 +43,7 @@ def test_primitive_through_placed_cones_twice_in_a_row(primitive, in_edit_mode):
     assert changed(once, snapshot(obj)) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("primitive", [*PRIMITIVES, "triangle"])
 def test_edit_mode_and_object_mode_agree_on_primitives(primitive):
     obj = add_primitive(primitive)

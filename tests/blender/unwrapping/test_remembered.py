@@ -96,6 +96,7 @@ def stretch(ball):
     ball.scale.x = 2.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [move, flip, add_seam, sharpen, add_cone, prescribe, pin_some, paint, turn, stretch])
 def test_what_decides_the_map_makes_it_new(change, made):
     ball = add_ball()

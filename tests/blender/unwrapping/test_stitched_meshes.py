@@ -74,6 +74,7 @@ def ball(request):
     return obj
 
 
+@pytest.mark.slow
 @pytest.mark.one_blender
 @pytest.mark.parametrize("preset", ["PAINT", "TILE", "BAKE"])
 @pytest.mark.parametrize("in_edit_mode", [False, True])

@@ -354,6 +354,7 @@ def test_a_header_line_that_lacks_its_keyword_comment_is_passed_over(form: str) 
     assert faces_of(mesh) == patch()[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", PLY_FORMS)
 def test_reading_a_header_takes_time_in_proportion_to_its_properties(form: str) -> None:
     def seconds(count: int) -> float:

@@ -148,6 +148,7 @@ def test_polygons_back_to_back_share_no_diagonal(size: int) -> None:
     assert count.max() == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANAR)
 def test_time_grows_little_faster_than_the_corners(name: str) -> None:
     points = PLANAR[name](60_001)

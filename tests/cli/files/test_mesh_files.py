@@ -89,6 +89,7 @@ def test_obj_numbers_that_are_not_finite_are_left_to_the_library() -> None:
     assert np.array_equal(positions[:, 0], [np.nan, np.inf, -np.inf], equal_nan=True)
 
 
+@pytest.mark.slow
 def test_obj_of_100k_triangles_reads_well_under_a_second(tmp_path: Path) -> None:
     positions, faces = cube(92)
     halves = [half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])]

@@ -135,6 +135,7 @@ def require_documented_end(folder: Path, output: str, code: int, printed: str) -
     assert not (folder / output).exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 def test_damaged_meshes(tmp_path: Path, name: str) -> None:
     ends = set()
@@ -156,6 +157,7 @@ def test_damaged_meshes(tmp_path: Path, name: str) -> None:
     assert {RESULT, REFUSED} <= ends
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SIDE_FILES)
 def test_damaged_side_files(tmp_path: Path, name: str) -> None:
     option = {"cones": "--cones", "seams": "--seam-edges", "importance": "--importance"}[name.split(".")[0]]
@@ -194,6 +196,7 @@ FIELDS: dict[str, bytes] = MESHES | {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error", "ignore:loadtxt")
 @pytest.mark.parametrize("name", FIELDS)
 def test_files_with_other_fields_are_read_and_written_or_refused(tmp_path: Path, name: str) -> None:
@@ -238,6 +241,7 @@ def test_commands_on_files_with_other_fields(tmp_path: Path, name: str) -> None:
     assert RESULT in ends
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SIDE_FILES)
 def test_side_files_with_other_fields(tmp_path: Path, name: str) -> None:
     option = {"cones": "--cones", "seams": "--seam-edges", "importance": "--importance"}[name.split(".")[0]]

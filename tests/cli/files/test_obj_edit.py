@@ -228,6 +228,7 @@ def other_lines(data: bytes) -> list[bytes]:
     return kept
 
 
+@pytest.mark.slow
 @settings(max_examples=500 if EVERYTHING else 150, deadline=None)
 @given(obj_files(), st.data())
 def test_random_files_differ_in_nothing_but_texture_coordinates(made: tuple[bytes, int], data: st.DataObject) -> None:
@@ -254,6 +255,7 @@ def test_random_files_differ_in_nothing_but_texture_coordinates(made: tuple[byte
     assert edit_obj(after, again, uv) == after
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(is_wine(), reason="`re` grows its memory by realloc, which takes several times as long in Wine 8")
 def test_100k_triangles_take_well_under_a_second() -> None:
     positions, faces = cube(92)

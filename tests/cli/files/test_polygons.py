@@ -63,6 +63,7 @@ def star_shaped(draw: st.DrawFn) -> np.ndarray:
     return scale * (loop(points) @ rotation(draw(st.integers(0, 99))).T + shift)
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(star_shaped())
 def test_concave_polygons_are_covered_exactly(points: np.ndarray) -> None:

@@ -57,6 +57,7 @@ def test_doubled_faces_cover_their_place_once(lsgp, parts: Path) -> None:
     assert doubled["packing"]["coverage"] == pytest.approx(once, rel=0.1)  # other diagonals, hence other cones
 
 
+@pytest.mark.slow
 def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts: Path) -> None:
     for preset in ("paint", "bake"):
         shelves = lsgp(*UNWRAP, "--preset", preset, "--pack", "shelves").report()
@@ -78,6 +79,7 @@ def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts
         assert {key: report[key] for key in kept} == {key: shelves[key] for key in kept}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("margin", "size"), [(4, None), (16, None), (1, 256), (0, 64), (None, 512)])
 def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, few_tries, margin, size) -> None:
     options = [*(("--margin", margin) if margin is not None else ()), *(("--texture-size", size) if size else ())]
@@ -88,6 +90,7 @@ def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, few_tries, ma
     assert found.between >= 2 * wanted * texel - WRITTEN and found.border >= wanted * texel - WRITTEN
 
 
+@pytest.mark.slow
 def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, few_tries) -> None:
     for density, outside in ((20, False), (200, True)):
         options = ("--texel-density", density, "--texture-size", 512, "--margin", 6)
@@ -99,6 +102,7 @@ def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, par
         assert (uv.max() > 1) == outside and uv.min() == pytest.approx(6 / 512, abs=WRITTEN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [("--preset", "bake"), ("--overlaps", "split")])
 def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, few_tries, options) -> None:
     done = lsgp(*UNWRAP, *options, "--udim", 3, "--margin", 8, "--texture-size", 512)
@@ -179,6 +183,7 @@ def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, few_t
     assert refused.code == 3 and "smaller margin" in refused.err
 
 
+@pytest.mark.slow
 def test_a_batch_makes_the_bytes_of_single_runs(lsgp, parts: Path) -> None:
     options = ("--preset", "bake", "--pack", "tight", "--margin", 8)
     done = lsgp("batch", "parts.obj", "--out", "many", "--no-pictures", "--reports", *options)

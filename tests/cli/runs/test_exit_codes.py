@@ -326,6 +326,7 @@ def test_the_null_device_is_written_to(cube_files: Path, monkeypatch: pytest.Mon
     assert not Path(what).exists() and not Path(os.devnull).is_file()
 
 
+@pytest.mark.slow
 def test_same_codes_from_a_process(lsgp, cube_files: Path) -> None:
     assert lsgp("unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json").code == 0
     assert lsgp("unwrap", "cube.obj").code == 2
@@ -376,6 +377,7 @@ def test_names_the_terminal_cannot_show_are_escaped(cube_files: Path) -> None:
     assert (cube_files / "würfel 2 立.obj").exists()
 
 
+@pytest.mark.slow
 def test_version_and_help(lsgp) -> None:
     assert lsgp("--version").out == f"lsgp {version('lsgp')}\n"
     for arguments in (["--help"], ["unwrap", "--help"], ["measure", "--help"]):

@@ -188,6 +188,7 @@ def test_measuring_can_be_interrupted(ball_files: Path, monkeypatch: pytest.Monk
     assert not Path("report.json").exists()
 
 
+@pytest.mark.slow
 def test_ctrl_c_on_a_terminal(tmp_path: Path) -> None:
     """A process whose errors go to a terminal: progress appears, Ctrl-C wipes it and ends the run."""
     pty = pytest.importorskip("pty")

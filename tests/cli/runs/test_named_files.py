@@ -77,6 +77,7 @@ def other_path(kind: str) -> str:
     return "other"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["same", "spelling", "symbolic link", "hard link", "linked folder"])
 @pytest.mark.parametrize(("name", "one", "other"), PAIRS)
 def test_no_argument_writes_over_the_file_of_another(

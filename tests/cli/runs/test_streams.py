@@ -33,6 +33,7 @@ def test_from_standard_input_to_standard_output(cube_files: Path, lsgp) -> None:
     assert b"quasi-conformal" in done.stderr and done.stderr.startswith(b"-: 192 of 192 triangles unwrapped")
 
 
+@pytest.mark.slow
 def test_a_format_that_the_first_bytes_tell_needs_no_option(cube_files: Path, lsgp) -> None:
     positions, faces = cube(4)
     data = off_text(positions / 3, faces).encode()
@@ -48,6 +49,7 @@ def test_a_format_that_the_first_bytes_tell_needs_no_option(cube_files: Path, ls
     assert lsgp("unwrap", "obj", "-o", "named", "--format", "obj").code == 0
 
 
+@pytest.mark.slow
 def test_cones_and_measures_go_through_streams_too(cube_files: Path, lsgp) -> None:
     data = (cube_files / "cube.obj").read_bytes()
     command = [sys.executable, "-m", "lsgp", "cones", "-", "-o", "-", "--count", "8"]
@@ -91,6 +93,7 @@ def test_a_mesh_whose_reader_has_gone_ends_with_2(cube_files: Path) -> None:
     require_plain_end(done, b"Broken pipe")
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("redirection", [">&-", "2>&-", "2>/dev/full", "<&-", "<&- 2>&-", "<&- >&- 2>&-"])
 def test_closed_streams_change_nothing(cube_files: Path, redirection: str) -> None:
@@ -101,6 +104,7 @@ def test_closed_streams_change_nothing(cube_files: Path, redirection: str) -> No
     assert text.count("\nf ") == 96 and "lsgp" not in text
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("redirection", ["2>&-", "2>/dev/full", ">&- 2>&- <&-"])
 def test_exit_codes_do_not_depend_on_being_heard(cube_files: Path, redirection: str) -> None:
@@ -109,6 +113,7 @@ def test_exit_codes_do_not_depend_on_being_heard(cube_files: Path, redirection: 
     assert shell(cube_files, redirection, "unwrap").returncode == 2
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("arguments", [["--version"], ["--formats"], ["--help"], ["unwrap", "--help"]])
 def test_information_that_cannot_be_printed_ends_with_2(cube_files: Path, arguments: list[str]) -> None:
@@ -120,6 +125,7 @@ def test_closed_standard_input_is_said(cube_files: Path) -> None:
     require_plain_end(shell(cube_files, "<&-", "unwrap", "-", "-o", "out.obj"), b"standard input")
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("use", ["input", "output", "report", "cones", "importance"])
 def test_pipes_by_name_are_refused_at_once(cube_files: Path, lsgp, use: str) -> None:

@@ -30,6 +30,7 @@ def surface(mesh: Mesh, **more: object) -> Surface:
     return Surface(mesh.positions, mesh.triangles, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_surface_alone_gives_a_map_without_overlaps_that_keeps_what_it_promises(preset: str, name: str) -> None:

@@ -32,6 +32,7 @@ def test_twice_the_same_bytes(name: str, unfold: str) -> None:
     assert digest(one) == digest(two)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("threads", ["1", "3"])
 def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -> None:
     script = (
@@ -62,6 +63,7 @@ def computed_in_python() -> list[str]:
     return [f"{name} {hashlib.sha256(values.tobytes()).hexdigest()}" for name, values in found.items()]
 
 
+@pytest.mark.slow
 def test_what_python_computes_is_the_same_on_older_processors() -> None:
     """Numpy and its BLAS have an implementation for each set of instructions, and round otherwise in each."""
     printed = in_another_process(

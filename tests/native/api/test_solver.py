@@ -319,6 +319,7 @@ CHANGES: dict[str, list[object]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2, *many_solves(3, 4, 5)])
 def test_any_sequence_of_calls_is_that_of_fresh_starts(seed: int) -> None:
     rng = np.random.default_rng(seed)

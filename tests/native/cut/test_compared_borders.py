@@ -48,6 +48,7 @@ def maps_made(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 @pytest.mark.parametrize(("around", "rings", "height"), BARRELS)
 def test_a_barrel_ends_at_its_rims(around: int, rings: int, height: float, preset: lsgp.Preset) -> None:

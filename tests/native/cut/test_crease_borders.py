@@ -75,6 +75,7 @@ def chamfered_box(size: tuple[float, float, float], chamfer: float) -> Mesh:
     return hull(points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SOLIDS)
 def test_a_hard_surface_unfolds_without_stretch_and_without_cones(name: str) -> None:
     mesh = SOLIDS[name]
@@ -349,6 +350,7 @@ def washer(segments: int, around: int = 24, bevel: float = 0.04) -> tuple[Mesh, 
     return meshes.make(positions, triangles), edges
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("segments", [1, 2, 3])
 @pytest.mark.parametrize("polygons", [False, True], ids=["triangles", "quads"])
 def test_faces_with_beveled_holes_keep_them(segments: int, polygons: bool) -> None:
@@ -409,6 +411,7 @@ def test_what_is_round_itself_has_no_bevels() -> None:
         assert len(lsgp.crease_borders(surface(mesh))) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [0.0, *nightly(1e-7, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize(
     "name", ["cube", "plate with tunnels", "slab of genus 2", *nightly("star", marks=[pytest.mark.many_solves])]
@@ -431,6 +434,7 @@ def test_rounding_does_not_choose_the_borders_of_regular_outlines(mesh: Mesh) ->
         assert pairs(lsgp.crease_borders(surface(moved))) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [8, *many_solves(12), *nightly(24, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])

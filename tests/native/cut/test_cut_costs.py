@@ -143,6 +143,7 @@ def beside_shortest(of: lsgp.Surface, paths: list[np.ndarray]) -> float:
     return float(np.mean(turned) / np.mean(shortest))
 
 
+@pytest.mark.slow
 def test_hidden_cuts_hardly_zigzag() -> None:
     """Costs that differ by chance from edge to edge make cuts turn twice as much."""
     hidden, by_chance = [], []

@@ -125,6 +125,7 @@ def test_cuts_mirror_each_other_on_triangles_that_do_not(turn: float) -> None:
     assert mirrored_share(mesh, usual.cut_edges) < 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 def test_cuts_differ_no_more_than_the_sides_of_the_surface() -> None:
     """Where these differ by more than an edge, cuts on corresponding vertices are each other's images."""
@@ -212,6 +213,7 @@ def test_auto_unwrap_mirrors_cuts_with_the_cones() -> None:
     assert_mirrored(mesh, image, result.cut_edges)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mesh", "count"),
     [
@@ -237,6 +239,7 @@ def test_islands_that_are_split_or_made_compact_are_alike_on_both_sides(mesh: me
         assert oracle.metric_gap(kept.corner_uv, split.corner_uv) <= 1e-9
 
 
+@pytest.mark.slow
 def test_cuts_of_split_islands_with_handles_are_alike_on_both_sides_or_named() -> None:
     """Rounding decides which cones and cuts are found where many are equally good."""
     mesh = meshes.subdivide(meshes.double_torus())
@@ -284,6 +287,7 @@ def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh,
     assert oracle.metric_gap(whole.corner_uv, cut.corner_uv) <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "turn", [pytest.param(0.0, id="exact"), pytest.param(0.4, id="turned", marks=pytest.mark.many_solves)]
 )

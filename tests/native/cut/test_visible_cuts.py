@@ -69,6 +69,7 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
     return float((is_cut * length * views).sum() / np.sqrt(area))
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize(
     ("family", "preset", "share", "most"),

@@ -63,6 +63,7 @@ def test_maps_whose_cuts_have_edges_of_two_lengths_gain_as_well(name: str) -> No
     assert ours[0] < other[0] / 2 and ours[1] < other[1] / 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 def test_covered_texels_stay_and_gutters_are_filled(name: str) -> None:
     whole, uv = unwrapped(MESHES[name])
@@ -209,6 +210,7 @@ def test_where_the_surface_ends_normals_keep_their_length() -> None:
     assert np.linalg.norm(2 * pair - 1, axis=1).max() <= 1 + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32", "float64"])
 @pytest.mark.parametrize("channels", [None, 1, 2, 3, 4])
 def test_type_and_shape_are_kept_and_channels_padded_alike(dtype: str, channels: int | None) -> None:

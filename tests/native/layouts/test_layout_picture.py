@@ -83,6 +83,7 @@ def test_every_island_has_a_fill_of_its_own_and_the_rest_is_paper() -> None:
     assert drawn.share(PAPER, square) == pytest.approx(1 - uv_area, abs=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mesh", [cube(4), double_torus()], ids=["cube", "genus 2"])
 def test_both_sides_of_every_cut_have_its_color(mesh: Mesh) -> None:
     result = lsgp.auto_unwrap(surface(mesh), preset="bake")
@@ -126,6 +127,7 @@ def _places(mesh: Mesh, result: lsgp.Result, vertices: object) -> np.ndarray:
     return np.clip(result.corner_uv[np.isin(mesh.triangles, vertices)], 1e-3, 1 - 1e-3)
 
 
+@pytest.mark.slow
 def test_boundaries_are_dark() -> None:
     mesh = cylinder()
     result = unwrap(mesh)

@@ -70,6 +70,7 @@ def quarter_turned(factor: complex) -> bool:
     return bool(np.abs(quarters - np.round(quarters)) < 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margin", [0.0, 1 / 4096, 4 / 1024, 16 / 512])
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_islands_keep_their_margin_and_one_scale(few_tries, preset: str, margin: float) -> None:
@@ -137,6 +138,7 @@ def digests() -> tuple[str, str]:
     return digest(), digest()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("threads", ["1", "3"])
 def test_another_process_gives_the_same_bytes(threads: str) -> None:
     """Whatever the order of hashes and the number of processors."""
@@ -146,6 +148,7 @@ def test_another_process_gives_the_same_bytes(threads: str) -> None:
     assert digests() == (printed.strip(), printed.strip())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 100, 700])
 def test_few_and_many_islands(count: int) -> None:
     uv, island = squares(count)
@@ -270,6 +273,7 @@ def test_progress_is_told_and_stops_it() -> None:
     assert told == sorted(told) and told[-1] == 1
 
 
+@pytest.mark.slow
 def test_presets_are_packed_where_that_is_installed(few_tries) -> None:
     for preset in PACKED:
         tight = lsgp.auto_unwrap(PARTS, preset=preset, pack="tight")
@@ -289,6 +293,7 @@ def test_islands_that_may_not_be_moved_stay() -> None:
             lsgp.auto_unwrap(surface(ball), ball.cones, pack="tight", **how)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("times", [0.3, 1.0, 3.0])
 def test_a_texel_density_has_the_margin_that_is_asked_for(few_tries, times: float) -> None:
     size, given = 512, on_shelves("bake")

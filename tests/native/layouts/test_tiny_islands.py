@@ -34,6 +34,7 @@ def spoiled(result: lsgp.Result) -> np.ndarray:
     return ~(first[:, 0] * second[:, 1] > first[:, 1] * second[:, 0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS, ids=["square", "texel density", "tiles"])
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("exponent", [0, -9, *many_solves(-3, -12)])

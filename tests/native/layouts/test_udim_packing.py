@@ -60,6 +60,7 @@ def scale(old: np.ndarray, new: np.ndarray, island: np.ndarray) -> float:
     return float(factors[0, 0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margin", [0.0, 4 / 1024, 16 / 512])
 @pytest.mark.parametrize("tiles", [2, 3])
 def test_every_island_has_its_margin_in_a_tile(given: lsgp.Result, tiles: int, margin: float) -> None:
@@ -94,6 +95,7 @@ def test_no_more_tiles_are_taken_than_make_islands_larger(tiles: int) -> None:
     assert in_tiles(alone, np.zeros(2, int)).keys() == {(0, 0)}
 
 
+@pytest.mark.slow
 def test_tiles_are_in_rows_of_ten() -> None:
     uv, island = rectangles([(1.0, 1.0)] * 23)
     packed = lsgp.pack_islands(uv, island, 0.05, udim=23)
@@ -112,6 +114,7 @@ def test_islands_that_may_not_be_turned_are_only_shifted(given: lsgp.Result) -> 
     assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_presets_take_tiles(given: lsgp.Result, few_tries) -> None:
     found = lsgp.auto_unwrap(PARTS, preset="bake", udim=3, margin=0.02)
     shared = dataclasses.replace(lsgp.preset_options("bake"), square_share=3.0)

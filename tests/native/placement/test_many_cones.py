@@ -27,6 +27,7 @@ def placed(count: int) -> lsgp.Placement:
     return place(MESH, count=count)
 
 
+@pytest.mark.slow
 @every_count
 def test_there_are_as_many_as_asked_for(count: int) -> None:
     cones = placed(count).cones

@@ -137,6 +137,7 @@ def test_the_first_press_is_symmetric_unless_that_is_turned_off_or_cones_are_giv
     assert lsgp.auto_unwrap(given, [v]) == lsgp.auto_unwrap(given, [v], symmetric=False)
 
 
+@pytest.mark.slow
 def test_each_component_is_symmetric_where_that_costs_little() -> None:
     """Alone the box with a handle gets usual cones, since symmetric ones are many, and MESH gets symmetric ones."""
     box, horned = zoo.member("box-with-handles-cells=5-handles=1-seed=0").mesh(), meshes.two_horned(3)

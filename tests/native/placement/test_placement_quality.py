@@ -53,6 +53,7 @@ def unwrapped(mesh: Mesh, placed: lsgp.Placement, **options: object) -> lsgp.Res
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", some_nightly(FEWEST, "julius", "igea-16k"))
 def test_few_cones_reach_the_target_and_the_map_keeps_it(name: str) -> None:
@@ -74,6 +75,7 @@ def test_stretch_at_a_count(name: str) -> None:
     assert unwrapped(mesh, placed).distortion.l2_stretch <= most
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", some_nightly(CLOSED, "igea-16k", "max-planck-25k", "elephant-genus3"))
 def test_as_good_as_other_cones_of_the_same_number(name: str) -> None:
@@ -116,6 +118,7 @@ def test_rounded_angles_and_places_are_chosen_together() -> None:
     assert result.cone_angles == pytest.approx(placed.cone_angles, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", ["suzanne-messy", "camel-head-disk", "teapot-messy", "rabbit", *nightly("julius")])
 def test_an_artist_gets_a_usable_map_without_any_choice(name: str) -> None:

@@ -159,6 +159,7 @@ COARSE = {
 LONG = ("gear", "gear with deep teeth", "gear with deep teeth in layers")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.many_solves] if name in LONG else []) for name in COARSE]
 )
@@ -190,6 +191,7 @@ def test_a_coarse_round_shape_is_no_polyhedron(name: str) -> None:
     assert_keeps_its_word(mesh, placed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -212,6 +214,7 @@ def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) 
     assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -283,6 +286,7 @@ def test_moved_cones_leave_marked_ones() -> None:
     assert placed.mapped_l2 == pytest.approx(unwrapped(mesh, placed).distortion.l2_stretch, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_map_without_hope_of_low_stretch_is_repaired_before_it_is_told() -> None:
     mesh = closed.gear(24, 0.3, 4)
     placed = place(mesh, count=8)

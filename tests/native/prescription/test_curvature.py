@@ -284,6 +284,7 @@ def test_angles_are_read_where_straight_cuts_cross(first: int, step: int) -> Non
     assert found.predicted_l2 <= 1.5 * prescribe(mesh).predicted_l2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -59,6 +59,7 @@ def test_harmonic_angles(name: str) -> None:
     assert found.cone_angles == pytest.approx(oracle.harmonic_angles(*mesh), abs=1e-9)
 
 
+@pytest.mark.slow
 @every_case
 def test_no_angle_can_be_improved(name: str) -> None:
     """The objective is convex: at its minimum the slope is 0 at cones within their bounds, up to a constant where

@@ -111,6 +111,7 @@ def test_one_density_everywhere_is_none(value: float) -> None:
     assert at_size == lsgp.remesh_to_quads(surface, size=0.3 / np.sqrt(value))
 
 
+@pytest.mark.slow
 def test_only_the_ratios_of_densities_matter_for_a_number_of_quads() -> None:
     mesh = MESHES["torus"]
     surface, density = surface_of(mesh), ramp(mesh)

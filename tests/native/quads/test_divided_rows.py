@@ -30,6 +30,7 @@ NARROW = {
 LONG = ("ball with two", "ball with three")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name if name not in LONG else pytest.param(name, marks=pytest.mark.many_solves) for name in NARROW]
 )

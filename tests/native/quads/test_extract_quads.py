@@ -147,6 +147,7 @@ def test_layouts_of_fewer_turns_are_traced_as_well(lattice: str) -> None:
     require_quads_of(mesh, layout.corner_uv, lsgp.extract_quads(surface(mesh), layout.corner_uv))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -85,6 +85,7 @@ def carried_share(mesh: Mesh, quads: lsgp.QuadMesh) -> float:
     return kept / whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", STRAIGHT)
 def test_edges_of_quads_carry_every_crease(name: str, target: int) -> None:
@@ -147,6 +148,7 @@ def remesh_of_bevels(width: float, every: int, target: int, seed: int) -> tuple[
     return np.isin(np.arange(len(mesh.positions)), found.surface_vertices).mean(), carried_share(mesh, found)
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize(
     ("widths", "targets", "least"), [*nightly(((0.05, 0.1, 0.15), (1000, 4000), 0.88)), ((0.2, 0.25), (4000,), 0.95)]
@@ -161,6 +163,7 @@ def test_corners_of_bevels_are_vertices_of_quads(
     assert carried >= least
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", ["disk", "hexagonal prism", "octagonal prism"])
 def test_rounding_takes_no_number_of_quads_far_from_the_target(name: str) -> None:
@@ -203,6 +206,7 @@ def test_without_straight_sides_creases_are_not_followed() -> None:
     assert carried_share(turned, found.mesh) < 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", [400, *nightly(2000, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize(
     "name",

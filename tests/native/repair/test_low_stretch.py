@@ -291,6 +291,7 @@ def test_vertices_without_importance_leave_a_valid_map(share: float) -> None:
 BOUNDS = {"fandisk": 1.006, "igea-16k": 1.010, "bird": 1.010, "max-planck-25k": 1.022, "hand-5k": 1.018}
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", BOUNDS)
 def test_real_meshes_with_their_cones(name: str) -> None:
@@ -304,6 +305,7 @@ def test_real_meshes_with_their_cones(name: str) -> None:
     assert seams.translation_residual <= 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", ["bird", "kitten-genus1", "camel-head-disk"])
 def test_the_setting_trades_conformality_for_stretch_on_real_meshes(name: str) -> None:
@@ -313,6 +315,7 @@ def test_the_setting_trades_conformality_for_stretch_on_real_meshes(name: str) -
     assert (np.diff([figures.quasi_conformal for figures in of_step]) > 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", ["kitten-genus1", "eight-genus2", "camel-head-disk"])
 def test_real_meshes_with_handles_and_borders(name: str) -> None:

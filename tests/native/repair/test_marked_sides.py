@@ -102,6 +102,7 @@ def test_cones_are_such_that_marked_edges_can_be_straight(size: tuple[float, flo
     assert undeclared_faults(marked, along, PAINT) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_features_stay_straight_when_islands_are_split(preset: lsgp.Preset) -> None:
     """The creases of the fandisk are straight in a map that overlaps, and in its islands as well."""
@@ -127,6 +128,7 @@ def test_what_the_other_options_do_with_marked_edges() -> None:
         assert off_axis(mesh, result, path) == 0 and result.features.share == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "transform, least",
     [([[1, 0, 1.5], [0, 1, 0.5], [0, 0, 1]], 0.8), pytest.param("taper", 0.93, marks=pytest.mark.many_solves)],
@@ -155,6 +157,7 @@ def test_edges_at_small_angles_get_different_axes(transform: list[list[float]] |
     assert undeclared_faults(replace(marked, borders=result.borders), result, PAINT) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "mesh", [closed.gear(6, 0.3, 2), pytest.param(closed.gear(12, 0.3, 2), marks=pytest.mark.many_solves)]
 )

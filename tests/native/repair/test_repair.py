@@ -12,6 +12,7 @@ import oracle
 import pytest
 from map_checks import assert_angles_met, assert_exact_transitions, codes, only, surface, unwrap
 from meshes import Mesh
+from nightly import some_nightly
 from result_check import undeclared_faults
 from sanitized_run import many_solves
 from shared_meshes import shared_mesh
@@ -136,6 +137,7 @@ def own_cones(name: str) -> lsgp.Result:
     return unwrap(shared_mesh(name))
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 def test_conformality_is_that_of_spectral_maps() -> None:
     """On average over the closed meshes; a spectral map minimizes conformal energy and nothing else."""
@@ -146,6 +148,7 @@ def test_conformality_is_that_of_spectral_maps() -> None:
     assert np.mean(repaired) <= np.mean(spectral)
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN])
 def test_own_cones_give_a_valid_map(name: str) -> None:
@@ -158,9 +161,10 @@ def with_automatic_cones(name: str) -> Mesh:
     return mesh._replace(cones=lsgp.place_cones(surface(mesh)).cones)
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("mode", ["conformal", "low-stretch"])
-@pytest.mark.parametrize("name", [*CLOSED, *OPEN, *WITHOUT_CONES])
+@pytest.mark.parametrize("name", some_nightly([*CLOSED, *OPEN, *WITHOUT_CONES], "elephant-genus3", "julius", "rabbit"))
 def test_automatic_cones_give_a_valid_map(name: str, mode: str) -> None:
     mesh = with_automatic_cones(name)
     assert_valid(mesh, unwrap(mesh, mode=mode))

@@ -65,6 +65,7 @@ def ends(result: lsgp.Result, halfedges: NDArray[np.int64]) -> NDArray[np.float6
     return np.stack([uv[halfedges], uv[halfedges // 3 * 3 + (halfedges + 1) % 3]], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("marked", [False, True])
 def test_features_lie_at_whole_or_half_tiles_where_that_is_asked_for(marked: bool) -> None:
     """Those of a spool are as far apart as they happen to be; without it some are in between."""
@@ -97,6 +98,7 @@ def test_every_crease_lies_on_a_line_of_the_lattice(name: str) -> None:
     assert undeclared_faults(surface(mesh), result, TILE) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("teeth", [7, pytest.param(10, marks=pytest.mark.many_solves)])
 def test_creases_whose_lengths_depend_on_each_other_lie_on_fine_lines(teeth: int) -> None:
     """Its cones follow from each other by halves and thirds of lengths, all of which have to be whole."""
@@ -330,6 +332,7 @@ def test_lines_without_a_free_coordinate_are_laid_out(corners: int, seed: int) -
     assert undeclared_faults(surface(mesh), joined(mesh), TILE) == []
 
 
+@pytest.mark.slow
 def test_all_creases_of_a_plate_with_many_tunnels_run_along_the_lattice() -> None:
     mesh = surface(tunnels.tunneled_plate(4, 3, 1))
     alone, shared = (

@@ -120,6 +120,7 @@ def test_rims_of_a_cone_run_along_the_lattice() -> None:
     assert undeclared_faults(frustum, result, PLAIN) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "teeth, depth",
     [(5, 0.4), *many_solves((7, 0.25)), *nightly((10, 0.15), (12, 0.2), marks=[pytest.mark.many_solves])],

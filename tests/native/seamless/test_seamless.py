@@ -106,6 +106,7 @@ def longer_side(corner_uv: np.ndarray) -> float:
 # --- exact on every kind of surface -----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lattice", LATTICES)
 @pytest.mark.parametrize("name", EVERYTHING)
 def test_every_cut_is_a_lattice_motion(name: str, lattice: str) -> None:

@@ -151,6 +151,7 @@ def test_texture_is_the_same_turned_by_quarters_but_not_mirrored():
 # --- squares with quarter turns ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tiles", [24, 64, 200])
 @pytest.mark.parametrize("name", [*GENERATED, *SHARED])
 def test_no_seam_is_seen(name: str, tiles: int) -> None:

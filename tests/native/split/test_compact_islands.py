@@ -206,6 +206,7 @@ COARSE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, *many_solves(1), *nightly(2, 3, marks=[pytest.mark.many_solves])])
 @pytest.mark.parametrize("name", COARSE)
 def test_no_scraps_are_cut_off_coarse_round_shapes(name: str, seed: int) -> None:
@@ -254,6 +255,7 @@ def test_faces_of_polygons_are_not_cut() -> None:
     assert pairs(cut) <= pairs(quads)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -47,6 +47,7 @@ def without_packer(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     return before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_divisions_other_than_the_estimated_one_fill_the_square_more(
     name: str, monkeypatch: pytest.MonkeyPatch

@@ -51,6 +51,7 @@ def test_surfaces_that_take_too_many_cones_end_at_all_their_creases() -> None:
     assert len(borders) >= 2 * 4 * TINY_FACES**2
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize("preset", some_nightly(get_args(Preset), "paint", "bake"))
 def test_every_preset_unwraps_hundreds_of_handles(preset: Preset) -> None:
@@ -59,6 +60,7 @@ def test_every_preset_unwraps_hundreds_of_handles(preset: Preset) -> None:
     assert result.distortion.l2_stretch == pytest.approx(1, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_layouts_whose_rounding_would_take_too_much_are_refused() -> None:
     with pytest.raises(lsgp.SolverError, match=r"GB of memory; the limit is"):
         lsgp.remesh_to_quads(surface(meshes.perforated_slab(10)))

@@ -59,6 +59,7 @@ def test_layouts_come_apart_in_one_island(name: str, count: int, seamless: bool)
         assert oracle.metric_gap(kept.corner_uv, split.corner_uv) <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.many_solves
 def test_most_layouts_come_apart_in_one_island() -> None:
     """Which ones do not can depend on the last digits of the map."""

@@ -39,6 +39,7 @@ def split(mesh: Mesh, **surface: object) -> lsgp.Result:
     return lsgp.parameterize(lsgp.Surface(mesh.positions, mesh.triangles, **surface), mesh.cones, options=SPLIT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_regrouped_pieces_are_the_same_map(seed: int) -> None:
     mesh = with_limbs(seed)
