@@ -2,8 +2,9 @@
 """Any bytes as the files that a command line reads, led by coverage (Atheris).
 
 The first byte chooses the command, the second its options and the suffix of the mesh; the files follow, with SEPARATOR
-between them. Every command must end with an exit code of its own and without a traceback, and what it wrote must be
-read back as the same mesh. Half of the inputs are made by changing single fields of files (`file_mutations`).
+between them. Every command must end with an exit code of its own and without a traceback, what it wrote must be read
+back as the same mesh, and the faces that it leaves without coordinates must be counted. Half of the inputs are made by
+changing single fields of files (`file_mutations`).
 tools/fuzz runs this, and replays what it found.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import io
 import random
+import re
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -59,7 +61,11 @@ class NoWorkers:
 command.Pool = NoWorkers
 
 
-def run(argv: list[str], exit_codes: tuple[int, ...]) -> int:
+MISSING = re.compile(rb"^(\d+) faces? without coordinates( and without triangles or area)?, ([\d.e+-]+) % of", re.M)
+
+
+def run(argv: list[str], exit_codes: tuple[int, ...]) -> tuple[int, bytes]:
+    """The exit code and all that was said."""
     said = io.TextIOWrapper(io.BytesIO())
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         code = main(argv)
@@ -67,17 +73,23 @@ def run(argv: list[str], exit_codes: tuple[int, ...]) -> int:
     told = said.buffer.getvalue()
     assert code in exit_codes, f"{argv} ended with {code}: {told!r}"
     assert code == 0 or told.strip(), f"{argv} ended with {code} without a word"
-    return code
+    return code, told
 
 
 def unwrap(folder: Path, how: int, mesh: Path) -> None:
     options = [str(folder / word) if (folder / word).is_file() else word for word in OPTIONS[how % len(OPTIONS)]]
     out = folder / "out.obj"
-    if run(["unwrap", str(mesh), "-o", str(out), *options], (0, 2, 3)) == 0:
+    code, told = run(["unwrap", str(mesh), "-o", str(out), *options], (0, 2, 3, 4))
+    if code in (0, 4):
         before, after = read_mesh(mesh), read_mesh(out, with_uv=True)
         assert np.array_equal(before.positions, after.positions, equal_nan=True)
         assert np.array_equal(before.corners, after.corners) and np.array_equal(before.sizes, after.sizes)
         assert np.isfinite(after.corner_uv).any()
+        said = {bool(without_area): (int(count), float(part)) for count, without_area, part in MISSING.findall(told)}
+        face = np.repeat(np.arange(len(after.sizes)), after.sizes)
+        bare = np.unique(face[np.isnan(after.corner_uv).any(axis=1)])
+        assert sum(count for count, _ in said.values()) == len(bare), told
+        assert (code == 4) == (False in said) and all(0 <= part <= 100 for _, part in said.values())
 
 
 def cones(folder: Path, how: int, mesh: Path) -> None:
