@@ -18,6 +18,7 @@ from ...core import native
 from ...core.errors import Refused, object_errors
 from ...core.findings import explain, relevant
 from ...core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
+from ...core.region import Region
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
 from ..layouts.densities import at_density
@@ -85,7 +86,9 @@ def _unwrap(task: Task, settings: Settings) -> Record:
     output.parent.mkdir(parents=True, exist_ok=True)
     with native.part("io.whole_files").whole_file(output, output.suffix, keep_backup=args.in_place) as partial:
         save_file(str(partial))
-    record = _record([unwrapped for _, unwrapped in solved], findings, failures) | {"output": task.output}
+    regions = [unwrap_task.region for _, unwrap_task in gathered]
+    record = _record([unwrapped for _, unwrapped in solved], findings, failures)
+    record |= {"output": task.output} | _missing(regions, outcomes)
     if settings.pictures:
         largest = max((unwrapped for _, unwrapped in solved), key=lambda found: len(found.region.surface.triangles))
         pictures = native.part("batch.pictures")
@@ -172,6 +175,24 @@ def _layouts(
     for unwrapped, corner_uv in zip(solved, layouts, strict=True):
         findings = [*findings, *tiny_findings(unwrapped, corner_uv)]
     return layouts, findings
+
+
+def _missing(regions: Sequence[Region], outcomes: Sequence[Unwrapped | Exception]) -> Record:
+    """The columns of the record about faces without coordinates: all those of a mesh that was refused, too."""
+    corners, faces, solved, count = [], [], [], 0
+    for region, outcome in zip(regions, outcomes, strict=True):
+        surface = region.surface
+        corners.append(surface.positions[surface.triangles] * region.object_scale)
+        own, face = np.unique(region.triangle_faces, return_inverse=True)
+        faces.append(count + face)
+        count += len(own)
+        refused = isinstance(outcome, Exception)
+        solved.append(np.zeros(len(surface.triangles), bool) if refused else outcome.result.solved)
+    missing = native.part("run.missing_faces").missing_of_triangles(
+        np.concatenate(corners), np.concatenate(faces), np.concatenate(solved)
+    )
+    columns = native.part("batch.records").missing_columns
+    return columns(0, 0.0) if missing is None else columns(len(missing.faces), missing.area_percent)
 
 
 def _nothing_solved(failures: dict[str, Exception]) -> Record:

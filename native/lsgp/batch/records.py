@@ -50,8 +50,13 @@ def record_of(report: Report) -> Record:
         warnings[warning["code"]] += len(warning["elements"]["indices"])
     figures = {key: report[key] for key in _FROM_REPORT}
     missing = report["missing"] or {"faces": [], "area_percent": 0.0}
-    figures |= {"missing_faces": len(missing["faces"]), "missing_area_percent": missing["area_percent"]}
+    figures |= missing_columns(len(missing["faces"]), missing["area_percent"])
     return EMPTY | figures | {"warnings": dict(warnings), "cones": len(report["cones"])}
+
+
+def missing_columns(faces: int, area_percent: float) -> Record:
+    """Of faces that could have coordinates and have none: how many, and their part of the area."""
+    return {"missing_faces": faces, "missing_area_percent": area_percent}
 
 
 def is_whole(record: Record) -> bool:

@@ -37,7 +37,34 @@ def missing_faces(file: MeshFile, solved: NDArray[np.bool_]) -> MissingFaces | N
     is_missing[triangulation.polygon[~solved]] = True
     if not is_missing.any():
         return None
-    areas, boxes = _areas(file)
+    return _of_sizes(is_missing, has_triangles, *_areas(file))
+
+
+def missing_of_triangles(
+    corners: NDArray[np.float64], face: NDArray[np.integer], solved: NDArray[np.bool_]
+) -> MissingFaces | None:
+    """As `missing_faces`, of faces that all have triangles.
+
+    corners: (m, 3, 3), where these are. face: (m,), from 0 without gaps.  solved: (m,).
+    """
+    count = int(face.max(initial=-1)) + 1
+    is_missing = np.zeros(count, bool)
+    is_missing[face[~solved]] = True
+    if not is_missing.any():
+        return None
+    first = np.zeros((count, 3))
+    first[face[::-1]] = corners[::-1, 0]
+    extents = np.zeros(count)
+    np.maximum.at(extents, face, np.abs(corners - first[face][:, None]).max(axis=(1, 2)))
+    return _of_sizes(is_missing, np.ones(count, bool), _sums_of_areas(corners, face, count), extents**2)
+
+
+def _of_sizes(
+    is_missing: NDArray[np.bool_],
+    has_triangles: NDArray[np.bool_],
+    areas: NDArray[np.float64],
+    boxes: NDArray[np.float64],
+) -> MissingFaces:
     impossible = is_missing & (~has_triangles | (areas <= _NO_AREA * boxes))
     possible = is_missing & ~impossible
     whole = areas.sum()
@@ -63,7 +90,13 @@ def _areas(file: MeshFile) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     areas = 0.5 * np.linalg.norm(curve, axis=1)
     extents = np.zeros(len(mesh.sizes))
     np.maximum.at(extents, polygon, np.abs(from_first).max(axis=1))
-    a, b, c = corners[triangulation.corner].transpose(1, 0, 2)
-    areas[triangulation.polygon] = 0.0
-    np.add.at(areas, triangulation.polygon, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
-    return areas, extents**2
+    of_triangles = _sums_of_areas(corners[triangulation.corner], triangulation.polygon, len(areas))
+    has_triangles = np.zeros(len(areas), bool)
+    has_triangles[triangulation.polygon] = True
+    return np.where(has_triangles, of_triangles, areas), extents**2
+
+
+def _sums_of_areas(corners: NDArray[np.float64], face: NDArray[np.integer], count: int) -> NDArray[np.float64]:
+    """(count,), of the triangles of each face.  corners: (m, 3, 3). face: (m,)."""
+    a, b, c = corners.transpose(1, 0, 2)
+    return np.bincount(face, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1), count)

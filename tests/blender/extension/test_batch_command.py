@@ -154,6 +154,37 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
         assert covered_twice(maps) == 0
 
 
+def test_faces_without_coordinates_are_counted(tmp_path):
+    """A band that is one-sided beside a cube, in one object and as one that is refused."""
+    turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    edge = [
+        np.stack([(2 + s * np.cos(turn / 2)) * np.cos(turn), (2 + s * np.cos(turn / 2)) * np.sin(turn)], axis=1)
+        for s in (-0.5, 0.5)
+    ]
+    height = [s * np.sin(turn / 2) for s in (-0.5, 0.5)]
+    places = np.concatenate([np.column_stack([xy, z]) for xy, z in zip(edge, height, strict=True)])
+    faces = [(i, i + 1, i + 25, i + 24) for i in range(23)] + [(23, 24, 0, 47)]
+    cases = {}
+    for name in ("joined", "apart"):
+        clear()
+        cube = add_cube("Cube", cuts=1)
+        band = bpy.data.meshes.new("Band")
+        band.from_pydata(places.tolist(), [], faces)
+        band_object = bpy.data.objects.new("Band", band)
+        bpy.context.collection.objects.link(band_object)
+        band_area = sum(face.area for face in band.polygons)
+        cases[name] = 100 * band_area / (band_area + sum(face.area for face in cube.data.polygons))
+        if name == "joined":
+            joined(cube, band_object)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / f"{name}.blend"), copy=True)
+    clear()
+    (tmp_path / "list.txt").write_text("joined.blend\napart.blend\n")
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "out", "--no-pictures", "--jobs", 1) == 4
+    for line in lines_of(tmp_path / "out"):
+        assert (line["status"], line["missing_faces"]) == ("ok", len(faces))
+        assert line["missing_area_percent"] == pytest.approx(cases[line["asset"].split(".")[0]], rel=0.05)
+
+
 @pytest.mark.one_blender
 @pytest.mark.parametrize("add_large", [add_ball, *nightly(add_sphere)], ids=["marked cones", "automatic cones"])
 def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path, add_large):
