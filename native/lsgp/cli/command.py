@@ -27,12 +27,12 @@ from ..io.png_files import write_png
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
 from ..io.standard_streams import complain, hold_standard_descriptors, say
-from ..io.whole_files import write_whole
+from ..io.whole_files import write_output
 from ..layouts.texels import texel_density
 from ..quads.quad_mesh import quad_quality
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, SOME, USAGE, ended, flushed, listed
-from ..run.named_files import Reads, Writes
+from ..run.named_files import Reads, Writes, written_files
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.quads_file import add_quads_options, quads_file
@@ -91,7 +91,11 @@ class _Command(_Parser):
         """What a run on one file, by `make`, is reported with."""
         self.add_format()
         self.add_argument(
-            "--report", metavar="FILE.json", action=Writes, type=Path, help="write a report, also when refused"
+            "--report",
+            metavar="FILE.json",
+            action=Writes,
+            type=Path,
+            help="write a report, also when refused; - for standard output",
         )
         self.set_defaults(run=_reported, make=make, **defaults)
 
@@ -245,8 +249,8 @@ def _reported(args: argparse.Namespace) -> int:
     except MemoryError:
         report, text, code = _refusal(out_of_memory(), run), None, REFUSED
     if args.report is not None:
-        write_whole(args.report, reports.to_json(report))
-    if text is not None and is_standard_stream(args.output):
+        write_output(args.report, reports.to_json(report))
+    if text is not None and (is_standard_stream(args.output) or is_standard_stream(args.report)):
         complain(text)
     elif text is not None:
         say(sys.stdout, text)
@@ -294,7 +298,7 @@ def _quads(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
 
 
 def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
-    file = read_file(args.input, run, args.format, with_uv=True, stitch=False)
+    file = read_file(args.input, run, args.format, with_uv=True, stitch=False, written=written_files(args))
     triangulation, corner_uv = file.triangulation, uv_of(file, "measure")
     without = np.flatnonzero(np.isnan(corner_uv).any(axis=(1, 2))).astype(np.int32)
     warnings = list(file.findings)

@@ -32,6 +32,8 @@ def require_usable_paths(args: argparse.Namespace) -> None:
             files["input"] = replace(files["input"], is_written=True)
     every = [*files.values(), *(mip_files(args) if args.command == "pad" else ())]
     require_separate_files(every)
+    if is_standard_stream(args.output) and is_standard_stream(args.report):
+        raise UsageError("the output and --report are both -, standard output; name a file for one of them")
     if args.command == "unwrap":
         output_format(None if is_standard_stream(args.output) else args.output, args.format)
         if args.picture is not None and args.picture.suffix.lower() != ".png":

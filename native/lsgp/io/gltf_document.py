@@ -38,6 +38,8 @@ IN_INDICES = (UNSIGNED_BYTE, UNSIGNED_SHORT, UNSIGNED_INT)
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 VERTICES, INDICES = 34962, 34963
 ALIGNMENT = 4
+# Of a GLB file, which says in 32 bits how long it and its chunks are.
+LONGEST_GLB = (1 << 32) - 1
 # Compressed forms of data, for which there is no decoder here.
 COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 # The lists of a document that are read here.
@@ -78,6 +80,12 @@ class Document:
         sources = [memoryview(buffer) for buffer in buffers]
         self.views = [_view(view, sources) for view in content.get("bufferViews", [])]
         self._largest = max((view.end - view.begin for view in self.views), default=0)
+
+    def named_files(self) -> tuple[str, ...]:
+        """The paths, from the document's folder, of its buffers and images that are files of their own."""
+        entries = [*self.content.get("buffers", []), *self.content.get("images", [])]
+        uris = [entry["uri"] for entry in entries if isinstance(entry.get("uri"), str)]
+        return tuple(unquote(uri) for uri in uris if not uri.startswith("data:"))
 
     def accessor(self, number: Any) -> dict[str, Any]:
         """Raises InputError."""
@@ -176,10 +184,13 @@ class Document:
     def to_bytes(self, *, binary: bool) -> bytes:
         """A GLB file, or with its data in the JSON a glTF file.  Buffer views that nothing refers to are dropped.
 
-        Raises InputError.
+        Raises InputError; WRONG_PARAMETER where it would be longer than a GLB file can be.
         """
         self._drop_unused_views()
-        buffer = self._joined_views()
+        groups = self._overlapping()
+        if binary:  # before all of it is in memory once more
+            _require_glb(sum(map(self._length, groups)))
+        buffer = self._joined_views(groups)
         self.content.pop("buffers", None)
         if buffer:
             self.content["buffers"] = [{"byteLength": len(buffer)}]
@@ -190,15 +201,21 @@ class Document:
         content = text.encode("utf-8", "surrogatepass")
         if not binary:
             return content + b"\n"
+        _require_glb(len(content) + len(buffer))
         chunks = _chunk(JSON_CHUNK, content, b" ") + (_chunk(BINARY_CHUNK, bytes(buffer), b"\0") if buffer else b"")
         return MAGIC + struct.pack("<II", VERSION, 12 + len(chunks)) + chunks
 
-    def _joined_views(self) -> bytearray:
+    def _length(self, group: list[int]) -> int:
+        """From the first byte of its views to the last one."""
+        return max(self.views[number].end for number in group) - self.views[group[0]].begin
+
+    def _joined_views(self, groups: list[list[int]]) -> bytearray:
         """The data of all views, whose places are put into the JSON; bytes that views share are there once."""
         buffer = bytearray()
-        for group in self._overlapping():
+        for group in groups:
             views = [self.views[number] for number in group]
-            begin, end = views[0].begin, max(view.end for view in views)
+            begin = views[0].begin
+            end = begin + self._length(group)
             if len(group) > 1:  # what begins at a multiple of four bytes does so again
                 buffer += bytes(begin % ALIGNMENT)
             for number, view in zip(group, views, strict=True):
@@ -236,6 +253,15 @@ class Document:
             self.content["bufferViews"] = [views[old] for old in used]
         else:
             self.content.pop("bufferViews", None)
+
+
+def _require_glb(length: int) -> None:
+    """For so many bytes of content.  Raises InputError: WRONG_PARAMETER where a GLB file cannot have them."""
+    if length > LONGEST_GLB - 2 * (8 + ALIGNMENT) - 12:
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"A GLB file can have {LONGEST_GLB} bytes, and this one would have some {length}. Write glTF or OBJ.",
+        )
 
 
 def load_document(data: bytes, read_uri: ReadUri) -> Document:

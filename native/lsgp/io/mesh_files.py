@@ -90,6 +90,14 @@ class MeshFile(ShortRepr):
         stitched, rows = stitched_cones(self.stitched, cones)
         return stitched, None if angles is None else [angles[row] for row in rows]
 
+    @property
+    def named_files(self) -> list[Path]:
+        """The files that belong to it, by its own words: buffers, images, materials. Of whole paths, which may lead to
+        another computer, none."""
+        if self.path is None:
+            return []
+        return [self.path.parent / name for name in self.mesh.named if "\0" not in name and not Path(name).anchor]
+
     def told(self, warnings: Sequence[Finding]) -> list[Finding]:
         """All findings of a run on this file, with warnings on its surface."""
         return [*self.findings, *without_stitched(self.stitched, warnings)]

@@ -196,6 +196,7 @@ def _joined(document: Document, with_uv: bool) -> PolygonMesh:
         np.full(len(faces) // 3, 3, np.int64),
         None if uv is None else np.concatenate(uv),
         _extras(document, primitives),
+        document.named_files(),
     )
 
 

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +16,8 @@ from ..indexed_uv import index_corners
 from .mesh_text import Rows, malformed, quoted
 from .polygons import PolygonMesh, require_polygons
 
+MATERIALS = b"mtllib"
+LINE_END = re.compile(rb"[\r\n]")
 FACES = (b"f", b"fo")  # now and formerly
 READ = (b"v", b"vt", *FACES)
 
@@ -33,7 +38,19 @@ def read_obj(data: bytes, with_uv: bool) -> PolygonMesh:
     require_polygons(len(positions), corners, faces.counts, lambda face: f" (line {faces.lines[face]})")
     corner_uv = _corner_uv(texture, faces) if with_uv else None
     extras += ("vertex colors",) if (vertices.counts >= 6).any() else ()
-    return PolygonMesh(positions, corners.astype(np.int32), faces.counts, corner_uv, extras)
+    return PolygonMesh(positions, corners.astype(np.int32), faces.counts, corner_uv, extras, _material_files(data))
+
+
+def _material_files(data: bytes) -> tuple[str, ...]:
+    """The names in mtllib statements: each may be several, or one with spaces."""
+    found: list[str] = []
+    at = data.find(MATERIALS)
+    while at >= 0:
+        end = LINE_END.search(data, at)
+        rest = data[at + len(MATERIALS) : end.start() if end else len(data)]
+        found += map(os.fsdecode, dict.fromkeys([rest.strip(), *rest.split()]))
+        at = data.find(MATERIALS, at + len(MATERIALS) + len(rest))
+    return tuple(found)
 
 
 def format_obj(mesh: PolygonMesh, corner_uv: NDArray[np.float64]) -> bytes:

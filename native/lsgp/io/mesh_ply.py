@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass, field, replace
 
@@ -21,6 +22,8 @@ TYPES = {
 BYTE_ORDERS = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 AXES = (b"x", b"y", b"z")
 LINE_END = re.compile(rb"\r\n?|\n")
+# By convention; the format itself has no images.
+TEXTURE = re.compile(rb"^comment[ \t]+TextureFile[ \t]+([^\r\n]*[^\s])", re.MULTILINE)
 # Of the lines of a header that are no comments.
 KEYWORDS = (b"ply", b"format", b"element", b"property", b"end_header")
 CORNER_LISTS = (b"vertex_indices", b"vertex_index")
@@ -82,7 +85,8 @@ def read_ply(data: bytes) -> PolygonMesh:
         else:
             table.skip(element)
     require_polygons(len(positions), corners, sizes)
-    return PolygonMesh(positions, corners.astype(np.int32), sizes, extras=_extras(elements))
+    textures = tuple(map(os.fsdecode, TEXTURE.findall(data[:begin])))
+    return PolygonMesh(positions, corners.astype(np.int32), sizes, extras=_extras(elements), named=textures)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +154,7 @@ def _read_header(data: bytes) -> tuple[list[Element], str, int, int]:
             case [] | [b"comment" | b"obj_info", *_]:
                 pass
             case [keyword, *_] if keyword not in KEYWORDS:
-                pass  # a further line of a comment, whose keyword some writers leave out
+                pass  # as of `with_whole_comments`
             case [b"format", name, _] if name in BYTE_ORDERS:
                 byte_order = BYTE_ORDERS[name]
             case [b"element", name, count] if count.isdigit() and len(count) < 19:
@@ -168,6 +172,16 @@ def _read_header(data: bytes) -> tuple[list[Element], str, int, int]:
                     f"{quoted(b' '.join(tokens))} is not a line of a PLY header, or the format is missing.", line
                 )
     raise malformed("the header has no end (end_header).", line + 1)
+
+
+def with_whole_comments(data: bytes) -> bytes:
+    """A PLY file that `read_ply` accepts, without empty lines in its header, and with the keyword at further lines of
+    comments, at which some writers leave it out."""
+    _, _, begin, _ = _read_header(data)
+    known = (*KEYWORDS, b"comment", b"obj_info")
+    lines = [(line, line.split()) for line in data[:begin].splitlines(keepends=True)]
+    whole = [line if words[0] in known else b"comment " + line.lstrip() for line, words in lines if words]
+    return b"".join(whole) + data[begin:]
 
 
 class _TextTable:

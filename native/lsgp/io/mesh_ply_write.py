@@ -19,7 +19,7 @@ from .. import _lsgp
 from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
 from .mesh_gltf import unsolved_at_origin
-from .mesh_ply import CORNER_LISTS, read_text_tables, structured
+from .mesh_ply import CORNER_LISTS, read_text_tables, structured, with_whole_comments
 from .mesh_text import malformed, quoted
 from .polygons import PolygonMesh
 
@@ -76,6 +76,7 @@ def _read_as_it_is(source: bytes, mesh: PolygonMesh) -> PlyData:
 def _read(source: bytes, mesh: PolygonMesh) -> PlyData:
     from plyfile import PlyData
 
+    source = with_whole_comments(source)
     size = _common_size(mesh)
     if size is None:
         return PlyData.read(io.BytesIO(source))

@@ -36,6 +36,7 @@ class PolygonMesh(EqualByContent, ShortRepr):
     sizes: (f,) int64, the number of corners of each polygon.
     corner_uv: (c, 2) float64, NaN at corners without texture coordinates; None where the file was not asked for them.
     extras: what else the file has, in its own words.
+    named: the names of other files that belong to it, as they stand there.
     """
 
     positions: NDArray[np.float64]
@@ -43,6 +44,7 @@ class PolygonMesh(EqualByContent, ShortRepr):
     sizes: NDArray[np.int64]
     corner_uv: NDArray[np.float64] | None = None
     extras: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
 
     @property
     def starts(self) -> NDArray[np.int64]:

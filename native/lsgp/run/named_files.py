@@ -85,3 +85,23 @@ def require_separate_files(files: Iterable[NamedFile]) -> None:
                 f"{written.argument} '{written.path}' and {named.argument} '{named.path}' are the same file; name "
                 "another"
             )
+
+
+def require_apart_from(files: Iterable[NamedFile], source: Path, belonging: Iterable[Path]) -> None:
+    """Raise UsageError where a file that is written belongs to the one that is read.  belonging: those that do."""
+    there = [path for path in belonging if path.is_file()]
+    for file in files:
+        for path in there:
+            if file.is_written and is_same_file(file.path, path):
+                raise UsageError(
+                    f"{file.argument} '{file.path}' is a file that '{source}' refers to; name another for what is "
+                    "written"
+                )
+
+
+def written_files(args: argparse.Namespace) -> list[NamedFile]:
+    """What a command on one file writes, as far as its arguments name it."""
+    files = named_files(args)
+    if args.output is not None and "output" not in files:  # of a batch
+        files["output"] = NamedFile("the output", args.output, is_written=True)
+    return [file for file in files.values() if file.is_written]

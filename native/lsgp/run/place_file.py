@@ -16,7 +16,7 @@ from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from ..options import Lattice, SeamMode
 from ..results import Placement
-from .named_files import Reads
+from .named_files import Reads, written_files
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
 from .unwrap_options import (
@@ -88,7 +88,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     kept_json = None if args.keep is None else load_json(Path(args.keep))
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     seams_json = [] if seams_path is None else load_json(seams_path)
-    file = read_file(args.input, run, args.format, stitch=stitches(args))
+    file = read_file(args.input, run, args.format, stitch=stitches(args), written=written_files(args))
     kept, angles = ((), None) if kept_json is None else file.cones(*cones_in(kept_json, Path(args.keep), None))
     surface = file.surface(pairs_in(seams_json, seams_path, "seam vertex"))
     with run.stage("cut_costs"):

@@ -24,7 +24,7 @@ from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh, remesh_to_quads
 from .direction_options import add_direction_options, load_directions, require_finite_up, strokes_of
 from .feature_options import add_features_option, features_of
-from .named_files import Reads
+from .named_files import Reads, written_files
 from .unwrap_file import Run, read_file
 from .unwrap_options import (
     add_cones_option,
@@ -108,7 +108,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     cones_json = None if path is None else load_json(path)
     directions_json = load_directions(args)
     density = None if args.density is None else load_density(Path(args.density))
-    file = read_file(args.input, run, args.format, stitch=stitches(args))
+    file = read_file(args.input, run, args.format, stitch=stitches(args), written=written_files(args))
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
     surface, strokes = file.surface(), strokes_of(args, directions_json, file)
     directions = args.up if strokes is None else strokes.directions

@@ -45,6 +45,7 @@ from ..triangles import uv_area
 from .direction_options import Strokes, load_directions, strokes_of
 from .feature_options import features_of
 from .missing_faces import MissingFaces, missing_faces
+from .named_files import NamedFile, require_apart_from, written_files
 from .unwrap_options import (
     cone_count,
     cones_file,
@@ -185,9 +186,19 @@ def out_of_memory() -> LsgpError:
 
 
 def read_file(
-    path: Path, run: Run, given_format: str | None = None, *, with_uv: bool = False, stitch: bool = True
+    path: Path,
+    run: Run,
+    given_format: str | None = None,
+    *,
+    with_uv: bool = False,
+    stitch: bool = True,
+    written: Sequence[NamedFile] = (),
 ) -> MeshFile:
-    """A mesh file, or standard input.  stitch: as of `read_mesh_file`.  Raises OSError, InputError."""
+    """A mesh file, or standard input.
+
+    stitch: as of `read_mesh_file`. written: what no file that belongs to this one may be.
+    Raises OSError, UsageError, InputError.
+    """
     source = None if is_standard_stream(path) else path
     with run.stage("read_file"):
         data = read_input(path)
@@ -196,6 +207,7 @@ def read_file(
         raise InputError("NO_UV", f"{form.name} is not read with texture coordinates. Convert the file to OBJ.")
     with run.stage("triangulate"):
         file = MeshFile.of(source, form, data, mesh, stitch)
+    require_apart_from(written, path, file.named_files)
     run.triangulation = file.triangulation
     return file
 
@@ -218,7 +230,7 @@ def _map(
     seams_json = [] if seams_path is None else load_json(seams_path)
     directions_json = load_directions(args)
     importance = None if args.importance is None else load_importance(Path(args.importance))
-    file = read_file(args.input, run, given_format, stitch=stitches(args))
+    file = read_file(args.input, run, given_format, stitch=stitches(args), written=written_files(args))
     if importance is not None and len(importance) != len(file.mesh.positions):
         raise InputError(
             "WRONG_PARAMETER",

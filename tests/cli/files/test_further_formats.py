@@ -61,7 +61,6 @@ def test_a_ply_keeps_polygons_properties_and_what_refers_to_vertices(tmp_path: P
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        (b"comment made for a test", b"made for a test"),
         (b"property int flags", b"property int fl\xe4gs"),
         (b"\n-1 ", b"\n99999999999 "),
         (b"ascii 1.0", b"ascii 2.0"),
@@ -77,6 +76,16 @@ def test_a_ply_that_its_writer_does_not_read_is_refused(tmp_path: Path, old: byt
         with pytest.raises(InputError, match=r"plyfile.*Write OBJ") as caught:
             write_mesh_file(tmp_path / "out.ply", file, split_uv(file))
         assert caught.value.code == "MALFORMED_FILE" and not (tmp_path / "out.ply").exists()
+
+
+@pytest.mark.parametrize("with_rows_of_equal_length", [False, True])
+def test_further_lines_of_a_comment_stay_comments(tmp_path: Path, with_rows_of_equal_length: bool) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    data = ply_bytes(*(cube(2) if with_rows_of_equal_length else patch()), extras=True)
+    (tmp_path / "in.ply").write_bytes(data.replace(b"comment made for a test", b"comment made\nfor a\n\n test"))
+    file = read_mesh_file(tmp_path / "in.ply")
+    write_mesh_file(tmp_path / "out.ply", file, split_uv(file))
+    assert plyfile.PlyData.read(tmp_path / "out.ply").comments[:3] == ["made", "for a", "test"]
 
 
 @pytest.mark.parametrize("source", [b"ply\nformat ascii 1.0\nend_header\n", b"OFF\n0 0 0\n"])

@@ -420,6 +420,22 @@ def test_parts_that_share_their_data_are_bounded(tmp_path: Path, monkeypatch: py
     assert caught.value.code == "MALFORMED_FILE"
 
 
+def test_a_glb_file_longer_than_it_can_say_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the data before all of it is put together, and by the JSON, in which are images."""
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "stone.png").write_bytes(bytes(4000))
+    for images, longest in (([], len(scene().buffer) // 2), ([{"uri": "stone.png"}], len(scene().glb()) + 4000)):
+        b = scene()
+        b.content["images"] = images
+        file = read_mesh_file(in_file(tmp_path / "in", b.glb(), "a.glb"))
+        uv = some_uv(len(file.triangulation.triangles))
+        monkeypatch.setattr(gltf_document, "LONGEST_GLB", longest)
+        with pytest.raises(InputError, match="Write glTF or OBJ") as caught:
+            write_mesh_file(tmp_path / "out.glb", file, uv)
+        assert caught.value.code == "WRONG_PARAMETER" and not (tmp_path / "out.glb").exists()
+        write_mesh_file(tmp_path / "out.gltf", file, uv)
+
+
 def test_what_a_shared_accessor_says_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gltf_document, "SHARED_BYTES", 1 << 20)
     b = Builder()

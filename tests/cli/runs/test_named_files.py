@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 from itertools import combinations, product
 from pathlib import Path
 
+import numpy as np
 import pytest
 from lsgp.cli.command import _parser, main
 from lsgp.io import safe_files
@@ -134,6 +136,62 @@ def test_mip_levels_are_written_over_no_file_that_is_named(
     said = capsys.readouterr().err
     assert "--mips 'out-mip2.png'" in said and "are the same file" in said
     assert Path("out-mip2.png").read_bytes() == CONTENT
+
+
+def gltf_with(buffer: str, image: str) -> bytes:
+    """A triangle whose data is in one file and whose image is another."""
+    attributes = {"POSITION": 0, "TEXCOORD_0": 1}
+    content = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"uri": buffer, "byteLength": 60}],
+        "images": [{"uri": image}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+        "accessors": [
+            {"bufferView": view, "componentType": 5126, "count": 3, "type": kind}
+            for view, kind in enumerate(("VEC3", "VEC2"))
+        ],
+        "meshes": [{"primitives": [{"attributes": attributes}]}],
+    }
+    return json.dumps(content).encode()
+
+
+CORNERS = np.array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1], "<f4").tobytes()
+OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"
+PLY = b"ply\nformat ascii 1.0\ncomment TextureFile the file\nelement vertex 3\nproperty float x\nproperty float y\n"
+PLY += b"property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+PLY += b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+REFERRING = {
+    "buffer": ("in.gltf", gltf_with("the%20file", "image.png")),
+    "image": ("in.gltf", gltf_with("data.bin", "the%20file")),
+    "materials": ("in.obj", b"# mtllib\nmtllib the file\n" + OBJ),
+    "second materials": ("in.obj", b"mtllib other.mtl the_file\r\n" + OBJ),
+    "texture": ("in.ply", PLY),
+}
+
+
+@pytest.mark.parametrize("kind", REFERRING)
+@pytest.mark.parametrize("command", ["unwrap", "cones", "quads", "measure"])
+def test_nothing_is_written_over_a_file_that_the_input_refers_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str, kind: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, content = REFERRING[kind]
+    if command == "measure" and name == "in.ply":
+        pytest.skip("PLY is not measured")
+    (tmp_path / "data.bin").write_bytes(CORNERS)
+    referred = Path("the_file" if kind == "second materials" else "the file")
+    referred.write_bytes(CORNERS)
+    make_link(Path("link.json"), str(referred))
+    Path(name).write_bytes(content)
+    before = {path: path.read_bytes() for path in Path().iterdir()}
+    output = [] if command == "measure" else ["-o", "out.json" if command == "cones" else "out.obj"]
+    wanted = ["--target", "8"] if command == "quads" else []
+    for report in (str(referred), "link.json"):
+        assert main([command, name, *output, *wanted, "--report", report]) == 2
+        assert f"--report '{report}' is a file that '{name}' refers to" in capsys.readouterr().err
+    if command == "cones":
+        assert main([command, name, "-o", str(referred)]) == 2
+    assert {path: path.read_bytes() for path in Path().iterdir()} == before
 
 
 def test_the_last_value_of_an_option_counts(cube_files: Path, monkeypatch: pytest.MonkeyPatch) -> None:

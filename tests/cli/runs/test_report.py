@@ -123,6 +123,18 @@ def test_report_of_a_result(lsgp, ball_files: Path) -> None:
         assert figure in done.out
 
 
+def test_report_to_standard_output(lsgp, ball_files: Path) -> None:
+    """What is said to people goes to standard error then, and a refusal is reported as well."""
+    before = sorted(ball_files.iterdir())
+    done = lsgp("unwrap", "ball.obj", "-o", "out.obj", "--cones", "cones.json", "--report", "-")
+    assert done.code == 0 and json.loads(done.out)["triangles"] == 432 and "432 of 432 triangles" in done.err
+    assert sorted(ball_files.iterdir()) == sorted([*before, ball_files / "out.obj"])
+    refused = lsgp("measure", "ball.obj", "--report", "-")
+    assert refused.code == 3 and json.loads(refused.out)["code"] == "NO_UV" and "NO_UV" in refused.err
+    both = lsgp("unwrap", "ball.obj", "-o", "-", "--report", "-")
+    assert both.code == 2 and both.out == "" and "both -" in both.err
+
+
 def test_report_of_a_refusal(lsgp, ball_files: Path) -> None:
     (ball_files / "out.obj").write_text("before")
     (ball_files / "given.json").write_text(json.dumps({"cones": [0, 4, 0]}))
