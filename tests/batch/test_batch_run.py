@@ -149,6 +149,7 @@ def test_only_missing_does_what_has_no_result(batch, lines_in, library: Path) ->
     assert journal.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_only_missing_does_not_mix_options(batch, library: Path) -> None:
     assert batch("library", "--out", "out").returncode == 4
     other = batch("library", "--out", "out", "--only-missing", "--border", "straight")
@@ -156,6 +157,7 @@ def test_only_missing_does_not_mix_options(batch, library: Path) -> None:
     assert batch("library", "--out", "out", "--border", "straight").returncode == 4
 
 
+@pytest.mark.slow
 def test_shards_together_are_the_whole(batch, library: Path, lines_in) -> None:
     out = library.parent / "out"
     codes = {batch("library", "--out", "out", "--shard", f"{i}/3").returncode for i in (1, 2, 3)}

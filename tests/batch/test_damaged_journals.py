@@ -52,6 +52,7 @@ def as_line(value: object) -> bytes:
     return json.dumps(value).encode()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("record", [RESULT, REFUSAL], ids=["result", "refusal"])
 @pytest.mark.parametrize("key", EMPTY)
 def test_what_counts_can_be_summed_up(tmp_path: Path, record: dict, key: str) -> None:
@@ -104,6 +105,7 @@ def test_the_last_line_of_an_asset_counts_even_if_it_is_damaged(tmp_path: Path, 
     assert ended.records.keys() == ({"b.off"} if b'"asset": "a.off"' in damage else {"a.off", "b.off"})
 
 
+@pytest.mark.slow
 def test_a_run_says_so_and_does_them_again(tmp_path: Path, capsys: pytest.CaptureFixture[str], lines_in) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
     folder.mkdir()

@@ -39,6 +39,7 @@ def many(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_worker_killed_in_the_middle_loses_nothing(cluster: Cluster, lines_in, many: Path) -> None:
     out = many.parent / "out"
     journal = out / "journal.jsonl"
@@ -59,6 +60,7 @@ def test_a_worker_killed_in_the_middle_loses_nothing(cluster: Cluster, lines_in,
     assert {path.name: path.read_bytes() for path in out.glob("*.obj")} == alone
 
 
+@pytest.mark.slow
 def test_wrong_usage(library: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("lsgp.batch.dask_engine.CONNECT_SECONDS", 1)
     arguments = ["batch", str(library), "--out", str(library.parent / "out")]

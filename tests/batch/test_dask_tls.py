@@ -104,6 +104,7 @@ def test_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str], options: 
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_help_warns(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["batch", "--help"]) == 0
     assert "can run any code" in " ".join(capsys.readouterr().out.split())

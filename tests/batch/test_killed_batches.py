@@ -208,6 +208,7 @@ def kill_worker(process: subprocess.Popen[bytes], mark: str) -> None:
 LOCAL = {"main": kill_main, "group": kill_group, "worker": kill_worker}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", TRIALS)
 def test_on_this_machine(library: Library, tmp_path: Path, seed: int) -> None:
     killed_and_resumed(library, tmp_path / "out", random.Random(seed), LOCAL, "--jobs", "2")

@@ -13,6 +13,7 @@ import lsgp
 import meshes
 import pytest
 from map_checks import digest, surface
+from nightly import nightly
 from other_process import in_another_process
 from sanitized_run import many_solves
 
@@ -39,6 +40,7 @@ def run(mesh: meshes.Mesh, progress: Callable[[float], object] | None = None, **
     return lsgp.parameterize(surface(mesh), mesh.cones, None, lsgp.Options(**options), progress=progress)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -119,12 +121,14 @@ def test_other_numbers_are_refused(threads: object) -> None:
     assert refused.value.code == "WRONG_PARAMETER"
 
 
+@pytest.mark.slow
 @counts_threads
 @pytest.mark.parametrize(
     ("variable", "option", "expected"),
     [
         *(("3", 0, 3), ("many", 0, os.cpu_count())),
-        *many_solves(("3", 2, 2), ("1", 0, 1), ("0", 0, os.cpu_count())),
+        *many_solves(("3", 2, 2)),
+        *nightly(("1", 0, 1), ("0", 0, os.cpu_count()), marks=[pytest.mark.many_solves]),
     ],
 )
 def test_in_another_process_the_environment_has_the_default(variable: str, option: int, expected: int) -> None:

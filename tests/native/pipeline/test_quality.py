@@ -43,6 +43,7 @@ def default_map(name: str) -> lsgp.Result:
     return unwrap(shared_mesh(name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BOUNDS)
 def test_distortion(name: str) -> None:
     mesh, result = shared_mesh(name), default_map(name)
@@ -127,6 +128,7 @@ def test_spectral_map_is_as_good(name: str) -> None:
     assert result.seams.translation_residual <= 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["fandisk", pytest.param("octa-flower", marks=pytest.mark.many_solves)])
 @pytest.mark.parametrize("unfold", ["poisson", "spectral"])
 def test_map_is_the_oracles(name: str, unfold: str) -> None:

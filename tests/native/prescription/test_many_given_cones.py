@@ -100,6 +100,7 @@ def test_back_substitutions_do_not_grow_with_the_cones() -> None:
     assert spent[0] <= COUNTS[0] + 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seamless",
     [pytest.param(None, id="plain", marks=pytest.mark.many_solves), pytest.param(lsgp.Seamless(), id="seamless")],

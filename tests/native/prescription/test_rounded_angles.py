@@ -91,6 +91,7 @@ def ratios() -> dict[tuple[str, str, int], float]:
     return out
 
 
+@pytest.mark.slow
 def test_no_angles_are_much_better() -> None:
     for case, ratio in ratios().items():
         assert 1 - 1e-9 <= ratio <= WORST_RATIO, case

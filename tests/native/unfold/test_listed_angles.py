@@ -139,6 +139,7 @@ def test_lists_are_what_is_counted_on_random_meshes() -> None:
     assert sum(wrong > 0 for wrong, _ in counted) >= 5 and sum(inexact > 0 for _, inexact in counted) >= 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cones", [8, None])
 @pytest.mark.parametrize("name", ["mpi", "pipe", *many_solves("femur", "joint")])
 def test_lists_are_what_is_counted_on_hard_meshes(name: str, cones: int | None) -> None:

@@ -58,6 +58,7 @@ MODELS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lattice", [None, "square"])
 @pytest.mark.parametrize("name", MODELS)
 def test_what_follows_strokes_misses_them_by_less_and_costs_a_tenth_at_most(name: str, lattice: str | None) -> None:
@@ -134,6 +135,7 @@ def test_rotations_about_handles_follow_strokes_with_given_angles() -> None:
     assert min(gains) > -0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["paint", "tile", "bake"])
 def test_a_press_with_strokes_is_never_farther_from_them(preset: str) -> None:
     mesh = meshes.bumpy_sphere(3)

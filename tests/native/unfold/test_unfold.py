@@ -247,6 +247,7 @@ def test_lscm_is_the_least_squares_conformal_map_of_the_same_cuts(name: str) -> 
     assert np.abs(oracle.as_uv(solved) - result.corner_uv).max() <= 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_rounding_does_not_decide_whether_lscm_unfolds_a_large_surface_exactly(seed: int) -> None:
     """Its system is singular but for rounding, which grows with the surface."""
