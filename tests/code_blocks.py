@@ -54,3 +54,26 @@ def blocks_of(document: Path) -> list[Block]:
     if lines is not None:
         raise ValueError(f"{document}:{begin}: the block does not end")
     return blocks
+
+
+def require_shown(block: Block, printed: str, document: Path) -> None:
+    """The lines of the block are printed, in this order; others may stand between them."""
+    said = iter(printed.splitlines())
+    for number, line in enumerate(block.text.splitlines(), block.line):
+        assert any(same_line(line, other) for other in said), f"{document}:{number} is not printed; this is:\n{printed}"
+
+
+def same_line(shown: str, printed: str) -> bool:
+    """The same words and, up to a hundredth or a mere rounding error, the same numbers."""
+    both = shown.split(), printed.split()
+    return len(both[0]) == len(both[1]) and all(map(same_word, *both))
+
+
+def same_word(shown: str, printed: str) -> bool:
+    if shown == printed:
+        return True
+    try:
+        a, b = float(shown), float(printed)
+    except ValueError:
+        return False
+    return abs(a - b) <= 1e-2 * abs(b) or max(abs(a), abs(b)) < 1e-11

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every code block of README.md and docs/ does what it says.
 
-The blocks of a document run one after the other in one folder, which has examples/model.obj to begin with, and a folder
-library with a small ball; Python blocks share their variables and find `positions` and `triangles` of the model.
-Blocks for Blender's Python are run by tests/blender/extension/test_documented_scripts.py; those that import a package
-that is not installed, or say in a line that they take it, are left out, and the test of their document then counts as
-skipped.
+The blocks of a document run one after the other in one folder, which has examples/model.obj to begin with, the same as
+model.obj, and a folder library with a small ball; Python blocks share their variables and find `positions` and
+`triangles` of the model. Blocks for Blender's Python are run by tests/blender/extension/test_documented_scripts.py;
+those that import a package that is not installed, or say in a line that they take it, are left out, and the test of
+their document then counts as skipped.
 """
 
 import contextlib
@@ -21,7 +21,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from code_blocks import LEFT_OUT, ROOT, Block, blocks_of, documents
+from code_blocks import LEFT_OUT, ROOT, Block, blocks_of, documents, require_shown
 
 MODEL = ROOT / "examples" / "model.obj"
 LANGUAGES = {"sh", "python", "pycon", "text", "cpp", "cmake", "mermaid"}
@@ -46,7 +46,9 @@ def test_blocks_say_what_they_are_and_why_they_are_left_out(document):
 @pytest.mark.slow
 @pytest.mark.parametrize("document", documents(), ids=names(documents()))
 def test_blocks_run_and_print_what_is_shown(document, tmp_path):
-    shutil.copy(MODEL, tmp_path)
+    (tmp_path / "examples").mkdir()
+    for folder in (tmp_path, tmp_path / "examples"):
+        shutil.copy(MODEL, folder)
     model = lsgp.read_mesh_file(MODEL)
     (tmp_path / "library").mkdir()
     write_obj(tmp_path / "library" / "small.obj", meshes.bumpy_sphere(1))
@@ -113,26 +115,3 @@ def run_python(block: Block, variables: dict, folder: Path, document: Path) -> s
         patch.setitem(variables, "print", lambda *values: printed.append(" ".join(map(str, values))))
         exec(code, variables)
     return "\n".join(printed)
-
-
-def require_shown(block: Block, printed: str, document: Path) -> None:
-    """The lines of the block are printed, in this order; others may stand between them."""
-    said = iter(printed.splitlines())
-    for number, line in enumerate(block.text.splitlines(), block.line):
-        assert any(same_line(line, other) for other in said), f"{document}:{number} is not printed; this is:\n{printed}"
-
-
-def same_line(shown: str, printed: str) -> bool:
-    """The same words and, up to a hundredth or a mere rounding error, the same numbers."""
-    both = shown.split(), printed.split()
-    return len(both[0]) == len(both[1]) and all(map(same_word, *both))
-
-
-def same_word(shown: str, printed: str) -> bool:
-    if shown == printed:
-        return True
-    try:
-        a, b = float(shown), float(printed)
-    except ValueError:
-        return False
-    return abs(a - b) <= 1e-2 * abs(b) or max(abs(a), abs(b)) < 1e-11

@@ -7,8 +7,11 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from code_blocks import ROOT
+from png_check import pixels_of
+from this_process import run_command
 
 EXAMPLES = ROOT / "examples"
 PROGRAMS = [str(path) for path in sorted(EXAMPLES.glob("*.py"))]
@@ -39,3 +42,20 @@ def test_pyright_accepts_them(tmp_path):
     command = [sys.executable, "-m", "basedpyright", "-p", str(tmp_path), "--pythonpath", sys.executable]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_picture_of_the_readme_shows_the_layout_of_the_model(tmp_path):
+    """Its cuts, by their colors, and its island; where that lies in the square may change."""
+    pytest.importorskip("xatlas", reason="takes xatlas")
+    command = ["unwrap", EXAMPLES / "model.obj", "-o", "duck.obj", "--preset", "paint", "--picture", "duck.png"]
+    assert run_command(tmp_path, *command).returncode == 0
+    made = pixels_of((tmp_path / "duck.png").read_bytes())
+    shown = pixels_of((ROOT / "docs" / "images" / "duck.png").read_bytes())
+    assert shown.shape == made.shape
+    assert colors_of(shown) == colors_of(made), "make docs/images/duck.png with the command of the README"
+
+
+def colors_of(pixels):
+    """Those of more than a few pixels."""
+    colors, counts = np.unique(pixels.reshape(-1, 3), axis=0, return_counts=True)
+    return {tuple(color) for color in colors[counts > 400].tolist()}
