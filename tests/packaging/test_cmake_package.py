@@ -75,3 +75,27 @@ def test_another_minor_version_is_refused(prefix, tmp_path, version):
     done = configure_consumer(prefix, tmp_path, f"{major}.{int(minor) + 1}")
     assert done.returncode != 0
     assert "lsgp" in done.stderr and f"version: {version}" in done.stderr
+
+
+@pytest.mark.skipif(
+    shutil.which("pkg-config") is None or shutil.which("c++") is None, reason="takes pkg-config and c++"
+)
+def test_a_program_builds_with_what_pkg_config_says_and_the_folder_may_be_moved(prefix, tmp_path, version):
+    moved = tmp_path / "moved"
+    shutil.copytree(prefix, moved, symlinks=True)
+    (folder,) = (found.parent for found in moved.rglob("lsgp.pc"))
+    eigen = tmp_path / "eigen3.pc"
+    eigen.write_text("Name: Eigen\nDescription: headers\nVersion: 3.4.0\nCflags: -I/usr/include/eigen3\n")
+    environment = os.environ | {"PKG_CONFIG_PATH": f"{folder}{os.pathsep}{tmp_path}"}
+
+    def said(*arguments: str) -> str:
+        command = ["pkg-config", *arguments, "lsgp"]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+    assert said("--modversion").strip() == version
+    program = tmp_path / "consumer"
+    flags = said("--cflags", "--libs").split()
+    subprocess.run(["c++", "-std=c++17", str(CONSUMER / "main.cpp"), "-o", str(program), *flags], check=True)
+    environment["LD_LIBRARY_PATH"] = str(folder.parent)
+    done = subprocess.run([program], env=environment, capture_output=True, text=True, timeout=60, check=True)
+    assert len(done.stdout.split()) == 4

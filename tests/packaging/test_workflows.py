@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Workflows that cannot run here: what they call exists, actions are pinned, and tokens may only read."""
+"""Workflows that cannot run here: what they call exists, actions are pinned, and tokens may only read, but for the job
+that publishes."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ def steps() -> Iterator[tuple[str, dict]]:
     """Workflow and step of every job."""
     for name, workflow in WORKFLOWS.items():
         for job in workflow["jobs"].values():
-            yield from ((name, step) for step in job["steps"])
+            yield from ((name, step) for step in job.get("steps", ()))
 
 
 def commands() -> list[tuple[str, str]]:
@@ -71,7 +72,22 @@ def test_one_action_has_one_hash() -> None:
 @pytest.mark.parametrize("name", WORKFLOWS)
 def test_workflows_may_only_read(name: str) -> None:
     assert WORKFLOWS[name]["permissions"] == {"contents": "read"}
-    assert all("permissions" not in job for job in WORKFLOWS[name]["jobs"].values())
+    jobs = {job for job, content in WORKFLOWS[name]["jobs"].items() if "permissions" in content}
+    assert jobs == ({"publish"} if name == "release.yml" else set())
+
+
+def test_the_job_that_may_write_runs_nothing_of_the_sources() -> None:
+    job = WORKFLOWS["release.yml"]["jobs"]["publish"]
+    assert job["permissions"] == {"contents": "write"}
+    assert "tag" in job["if"]
+    assert [step["uses"].partition("@")[0] for step in job["steps"] if "uses" in step] == ["actions/download-artifact"]
+    assert all("tools/" not in step.get("run", "") for step in job["steps"])
+
+
+def test_workflows_that_are_called_can_be() -> None:
+    called = [job["uses"] for workflow in WORKFLOWS.values() for job in workflow["jobs"].values() if "uses" in job]
+    assert called == ["./.github/workflows/wheels.yml"]
+    assert all("workflow_call" in WORKFLOWS[Path(path).name][True] for path in called)
 
 
 def test_what_cibuildwheel_calls_exists() -> None:
