@@ -46,7 +46,6 @@ def test_pyright_accepts_them(tmp_path):
 
 def test_the_picture_of_the_readme_shows_the_layout_of_the_model(tmp_path):
     """Its cuts, by their colors, and its island; where that lies in the square may change."""
-    pytest.importorskip("xatlas", reason="takes xatlas")
     command = ["unwrap", EXAMPLES / "model.obj", "-o", "duck.obj", "--preset", "paint", "--picture", "duck.png"]
     assert run_command(tmp_path, *command).returncode == 0
     made = pixels_of((tmp_path / "duck.png").read_bytes())
