@@ -129,10 +129,7 @@ def test_all_functions_are_listed() -> None:
     "name",
     [
         *(name for name in FUNCTIONS if name != "pack_islands"),
-        pytest.param(
-            "pack_islands",
-            marks=pytest.mark.xfail(reason="memory in proportion to coordinates far from 1 is no refusal", strict=True),
-        ),
+        pytest.param("pack_islands", marks=pytest.mark.skip("takes memory in proportion to coordinates far from 1")),
     ],
 )
 def test_arrays_are_taken_or_refused(name: str) -> None:
