@@ -47,3 +47,18 @@ TEST_CASE("the smallest box around a turned rectangle lies along its longer side
     CHECK(std::abs(std::imag(lsgp::longer_side(lsgp::convex_hull(corners)) / along)) <= 1e-15);
   }
 }
+
+TEST_CASE("the hull of points at one place is that point, and of points on a line their ends") {
+  for (const int count : {1, 2, 5}) {
+    const Eigen::VectorXcd same = Eigen::VectorXcd::Constant(count, Complex(0.3, -2));
+    const auto hull = lsgp::convex_hull(same);
+    REQUIRE(!hull.empty());
+    for (const Complex z : hull) CHECK(z == same[0]);
+  }
+  Eigen::VectorXcd line(3);
+  line << Complex(1, 1), Complex(3, 3), Complex(2, 2);
+  const auto ends = lsgp::convex_hull(line);
+  REQUIRE(ends.size() == 2);
+  CHECK(ends[0] == Complex(1, 1));
+  CHECK(ends[1] == Complex(3, 3));
+}

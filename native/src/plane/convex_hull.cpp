@@ -35,6 +35,7 @@ Array<Complex> outer_points(const Eigen::VectorXcd& position) {
     }
     if (!inside) outer.push_back(z);
   }
+  if (outer.empty()) outer.push_back(position[0]);  // all of them are at one place
   return outer;
 }
 
