@@ -21,7 +21,7 @@ def overlaps(z: NDArray[np.complex128]) -> tuple[NDArray[np.int64], NDArray[np.f
     z = np.where(area[:, None] < 0, z[:, ::-1], z)
     has_inside = area != 0
     pairs, areas = [np.empty((0, 2), np.int64)], [np.empty(0)]
-    for i, j in _meeting_boxes(z):
+    for i, j in meeting_boxes(z):
         shared = _shared_area(z[i] - z[i, :1], z[j] - z[i, :1])
         found = (shared > 0) & has_inside[i] & has_inside[j]
         pairs.append(np.stack([i, j], axis=1)[found])
@@ -33,7 +33,7 @@ def _cross(a: NDArray[np.complex128], b: NDArray[np.complex128]) -> NDArray[np.f
     return a.real * b.imag - a.imag * b.real
 
 
-def _meeting_boxes(z: NDArray[np.complex128]) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+def meeting_boxes(z: NDArray[np.complex128]) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
     """Pairs of triangles whose boxes meet, each once.
 
     The layout is cut into rows, and the boxes in a row are swept from left to right; a pair belongs to the row in which
