@@ -22,6 +22,7 @@ with atheris.instrument_imports(include=["lsgp"]):
 
 import numpy as np
 from public_calls import FUNCTIONS
+from random_islands import layout, layout_faults
 from result_check import undeclared_faults
 
 TYPES = ["f8", "f4", "i4", "i8", "u8", "u1", "?", "c16", "O", "S4"]
@@ -212,6 +213,17 @@ def quads(data: Data, on: lsgp.Surface) -> None:
     assert np.isfinite(found.positions).all()
 
 
+def pack(data: Data, _: lsgp.Surface) -> None:
+    """Islands that no mesh should have, some corners of which are changed."""
+    given = layout(data.ConsumeIntInRange(0, 2**31 - 1), most=12)
+    uv = array(data, 6, given.corner_uv) if data.ConsumeBool() else given.corner_uv
+    margin, fill = number(data, 0.0, 0.01), data.ConsumeBool()
+    how = {"turned": pick(data, [True, False, "quarters"]), "progress": progress(data)}
+    packed = lsgp.pack_islands(uv, given.island, margin, fill=fill, effort="quick", **how)
+    faults = layout_faults(given._replace(corner_uv=np.asarray(uv)), packed, float(margin), fill=fill)
+    assert not faults, f"{faults} of {uv}, {given.island}, {margin}, {fill}, {how}"
+
+
 def any_function(data: Data, on: lsgp.Surface) -> None:
     """Any public function, with some of the arguments that it accepts replaced."""
     function, accepted = FUNCTIONS[pick(data, sorted(FUNCTIONS))]
@@ -232,7 +244,20 @@ def any_function(data: Data, on: lsgp.Surface) -> None:
 
 # With these, what is asked for may take any time.
 SLOW = {"target", "size", "triangles", "count", "margin", "margins", "options", "preset"}
-VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure, quads, any_function]
+VERBS = [
+    parameterize,
+    parameterize,
+    solve,
+    find_cuts,
+    creases,
+    prescribe,
+    place,
+    gains,
+    measure,
+    quads,
+    pack,
+    any_function,
+]
 
 
 def one_input(raw: bytes) -> None:
