@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edit Cones with the mouse and the keyboard: drag, add, remove, angles, Esc, one step of undo.
 
-Run by run_in_window.py; no pytest.
+Run by run_in_window.py, not by pytest.
 """
 
 import tempfile
@@ -10,6 +10,7 @@ from pathlib import Path
 import bl_ui
 import bpy
 import numpy as np
+import pytest
 from installed import addon
 from mathutils import Quaternion, Vector
 from scenes import ANGLES, UvMap, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
@@ -272,6 +273,7 @@ def begin_again_and_cancel():
     yield from until(lambda: not editing())
 
 
+@pytest.mark.nightly
 def test_cones_are_added_in_each_view_of_four():
     yield from begin()
     cones = marked(ball())
@@ -513,6 +515,7 @@ def test_esc_leaves_two_objects_as_they_were():
     assert not any(changed(*pair) for pair in zip(before, states(names), strict=True))
 
 
+@pytest.mark.nightly
 def test_objects_outside_a_local_view_are_not_picked():
     names = yield from begin_with_two()
     left, right = (bpy.data.objects[name] for name in names)

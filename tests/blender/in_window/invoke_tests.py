@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Unwrap from Cones and Place Cones as an artist invokes them: progress, Esc, undo; the table of angles.
 
-Run by run_in_window.py; no pytest.
+Run by run_in_window.py, not by pytest.
 """
 
 import threading
@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 
 import bpy
 import numpy as np
+import pytest
 from installed import addon
 from mathutils import Vector
 from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
@@ -171,6 +172,7 @@ def enter_edit_mode(obj):
     edit(obj)
 
 
+@pytest.mark.nightly
 def test_a_mesh_that_is_changed_meanwhile_is_left_alone():
     for change in (move_vertex, add_layer, enter_edit_mode):
         cube = add_cone_cube()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What may happen while an operator computes or a tool edits: meshes change or go, files are saved, pictures rendered.
 
-Run by run_in_window.py; no pytest.
+Run by run_in_window.py, not by pytest.
 """
 
 import shutil
@@ -14,6 +14,7 @@ import bmesh
 import bpy
 import edit_tests
 import numpy as np
+import pytest
 from installed import addon
 from invoke_tests import computing, stored_uv, unwrap, unwrapping
 from scenes import add_ball, add_cone_cube, changed, edit, snapshot, uv_key
@@ -212,6 +213,7 @@ def clear_edited_mesh(obj):
     bmesh.update_edit_mesh(obj.data)
 
 
+@pytest.mark.nightly
 def test_tools_end_where_their_mesh_goes_and_go_on_where_it_is_renamed():
     for tool in TOOLS:
         for change in (remove_object_in_edit_mode, remove_mesh, clear_edited_mesh, rename):

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over meshes, judged by the pixels of a real window.  Run by run_in_window.py; no pytest."""
+"""What is drawn over meshes, judged by the pixels of a real window.  Run by run_in_window.py, not by pytest."""
 
 from dataclasses import replace
 
 import bpy
 import gpu
 import numpy as np
+import pytest
 from installed import addon
 from mathutils import Vector
 from scenes import add_ball, add_cone_cube, edit
@@ -85,6 +86,7 @@ def test_cuts_and_cones_are_drawn_in_the_colors_of_the_preferences():
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+@pytest.mark.nightly
 def test_nothing_is_drawn_with_overlays_off_or_without_a_selection():
     unwrapped(add_cone_cube)
     space = area().spaces.active
@@ -99,6 +101,7 @@ def test_nothing_is_drawn_with_overlays_off_or_without_a_selection():
     assert count((yield from pixels()), look().tip) < 20
 
 
+@pytest.mark.nightly
 def test_cones_behind_the_mesh_are_hidden_but_in_x_ray():
     cube = unwrapped(add_cone_cube)
     bpy.ops.view3d.view_axis(type="RIGHT")
@@ -129,6 +132,7 @@ def test_angles_are_written_at_cones_that_nothing_hides():
     area().spaces.active.shading.show_xray = False
 
 
+@pytest.mark.nightly
 def test_errors_are_written_at_strokes_that_the_map_misses():
     ball = add_ball(cuts=9)
     up = np.zeros((len(ball.data.polygons), 3), np.float32)
@@ -174,6 +178,7 @@ def test_arrows_and_errors_are_drawn_at_marked_edges():
     assert count((yield from pixels()), look().up) > count(hidden, look().up)
 
 
+@pytest.mark.nightly
 def test_flipped_and_overlapping_faces_are_drawn():
     cube = unwrapped(add_cone_cube)
     plain = yield from pixels()
@@ -196,6 +201,7 @@ def test_flipped_and_overlapping_faces_are_drawn():
         assert (toward < np.linalg.norm(plain[tinted] - np.array(getattr(look(), name)[:3]), axis=1)).mean() > 0.95
 
 
+@pytest.mark.nightly
 def test_distortion_is_drawn_in_its_colors_with_a_scale():
     unwrapped(add_ball)
     plain = yield from pixels()

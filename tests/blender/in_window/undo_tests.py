@@ -108,6 +108,7 @@ def test_ten_unwraps_of_a_ramp_are_undone_and_redone_exactly():
     yield from ten_rounds(add_ramp)
 
 
+@pytest.mark.nightly
 def test_unwraps_of_several_meshes_in_edit_mode_are_one_step():
     names = [add_cone_cube("First").name, add_ball("Second").name, add_marked_tube().name]
     yield from in_rounds(names, True)
