@@ -118,6 +118,16 @@ def test_what_keeps_its_size_is_in_a_square_at_the_origin(kind: str) -> None:
     assert found(kind, uv, 0.1 / side).coverage > 0.9 * filled.coverage
 
 
+def test_where_islands_come_from_does_not_matter() -> None:
+    """Shifts that round no coordinate."""
+    for kind in ("concave", "mixed"):
+        exact = np.round(islands(kind).corner_uv * 2**20) / 2**20
+        expected = lsgp.pack_islands(exact, islands(kind).island, MARGIN, effort="quick")
+        for place in ((64.0, -32.0), (0.5, 0.25)):
+            uv = lsgp.pack_islands(exact + place, islands(kind).island, MARGIN, effort="quick")
+            assert np.abs(uv - expected).max() < ROUNDING
+
+
 @cache
 def digest_of_this_process() -> str:
     return digest()
