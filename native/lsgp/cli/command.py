@@ -62,7 +62,7 @@ class _Parser(argparse.ArgumentParser):
     def refuse_unknown(self, unknown: Sequence[str]) -> NoReturn:
         """End with the words that nothing takes, and the option that the first of them may mean."""
         known = [option for action in self._actions for option in action.option_strings]
-        meant = get_close_matches(unknown[0].partition("=")[0], known, 1)
+        meant = get_close_matches(unknown[0].partition("=")[0], known, 1, 0.8)  # not --report for --preset
         self.error(f"unrecognized arguments: {' '.join(unknown)}" + (f"; is {meant[0]} meant?" if meant else ""))
 
 

@@ -40,7 +40,7 @@ MISTAKES = {
     "onto itself": (("unwrap", "cube.obj", "-o", "cube.obj"), 2, "is the input", "--in-place"),
     "output format": (("unwrap", "cube.obj", "-o", "out.fbx"), 2, "cannot be written as .fbx", r"OBJ \(.obj\)"),
     "option": (("unwrap", "cube.obj", *OUT, "--cone", "auto"), 2, "unrecognized arguments: --cone", "is --cones meant"),
-    "option of another": (("measure", "cube.obj", "--preset", "paint"), 2, "--preset paint", "lsgp measure --help"),
+    "option of another": (("measure", "cube.obj", "--preset", "paint"), 2, "--preset paint\n", "lsgp measure --help"),
     "value": (("unwrap", "cube.obj", *OUT, "--preset", "pain"), 2, "invalid choice: 'pain'", "'paint', 'tile', 'bake'"),
     "number": (("unwrap", "cube.obj", *OUT, "--tiles", "ten"), 2, "invalid float value: 'ten'", "lsgp unwrap --help"),
     "option alone": (("unwrap", "cube.obj", *OUT, "--tiles", "8"), 2, "is for seamless layouts", "add --seamless"),
