@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo's job inside Blender: unwrap subdivided Suzanne by one press of Auto Unwrap, measure, save, draw.
+"""The demo's job inside Blender: unwrap subdivided Suzanne by one press of Auto Unwrap, measure, draw, save, render.
 
 Run by tools/demo, in the bpy module (python demo_scene.py ...) or in a Blender (blender -b --python demo_scene.py --
 ...). BLENDER_USER_RESOURCES must name a throw-away profile: the extension is installed there.
@@ -18,6 +18,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
+import demo_layout
 import demo_picture
 from bpy_program import run_as_program
 from demo_table import ANGLES, AREA, CUT_LENGTH, FLIPPED, ISLANDS, MISMATCH, OVERLAPPING, STRETCH, table
@@ -48,6 +49,9 @@ def main() -> None:
     )
     print(table("method", COLUMNS, rows), end="\n\n", flush=True)
 
+    drawing = arguments.out / "suzanne-map.svg"
+    demo_layout.write_layout(suzanne, ours.cut_edges, marked_cones(suzanne), drawing)
+    say(f"wrote the map, as a drawing: {drawing}")
     for obj in (suzanne, projected):
         demo_picture.add_checker(obj)
     bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "suzanne.blend"))
@@ -77,7 +81,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--out", type=Path, required=True, help="folder for the scene and the picture")
-    parser.add_argument("--samples", type=int, default=64, help="samples a pixel of the picture")
+    parser.add_argument("--samples", type=int, default=12, help="samples a pixel of the picture")
     own = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     return parser.parse_args(own)
 

@@ -19,6 +19,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_closeup
+import demo_layout
 import demo_picture
 import demo_scene
 import demo_texture
@@ -51,7 +52,7 @@ def main() -> None:
     lsgp = demo_scene.install_extension(arguments.extension)
     texture = demo_texture.pinwheels(TEXTURE_SIZE)
     material = demo_closeup.texture_material(texture)
-    rows, shots = [], []
+    rows, maps, shots = [], [], []
     for shape in COLLECTION if MESHES.is_dir() else GENERATED:
         demo_scene.say(f"unwrapping the {shape.name}")
         ours = add(shape, material)
@@ -59,7 +60,9 @@ def main() -> None:
         demo_scene.run_in_edit_mode(ours, bpy.ops.mesh.cone_place, **count)
         demo_scene.run_in_edit_mode(ours, bpy.ops.uv.cone_unwrap, seamless=True, tile_fit="TILES", tiles=shape.tiles)
         _, measured = demo_scene.measure(lsgp, ours)
-        view = demo_closeup.choose_view(ours, measured.cut_edges, demo_scene.marked_cones(ours))
+        cones = demo_scene.marked_cones(ours)
+        maps.append((ours, measured.cut_edges, cones))
+        view = demo_closeup.choose_view(ours, measured.cut_edges, cones)
         theirs = demo_scene.add_copy_unwrapped_by_blender(ours, measured.cut_edges, "ANGLE_BASED")
         demo_closeup.lay_alike(theirs, ours, view)
         shots.append((ours, demo_closeup.whole(ours, view), "whole"))
@@ -68,9 +71,13 @@ def main() -> None:
             rows.append((f"{shape.name}, {label}", figures(demo_scene.measure(lsgp, obj)[1], uv, texture)))
             shots.append((obj, view, label))
     print("\n" + table("layout", COLUMNS, rows), end="\n\n", flush=True)
-    demo_scene.say("rendering the pictures")
+    for obj, cut_edges, cones in maps:
+        drawing = arguments.out / f"seamless-map-{obj.name.lower()}.svg"
+        demo_layout.write_layout(obj, cut_edges, cones, drawing)
+        demo_scene.say(f"wrote the map, as a drawing: {drawing}")
     bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "seamless.blend"))
     for number, (obj, view, label) in enumerate(shots):
+        demo_scene.say(f"rendering picture {number + 1} of {len(shots)}")
         demo_closeup.render_view(obj, view, arguments.out / f"seamless-{number}-{label}.png", arguments.samples)
 
 

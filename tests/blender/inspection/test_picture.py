@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture at the top of the README shows what Auto Unwrap makes today."""
+"""The picture at the top of the README shows what Auto Unwrap makes today, and the demo's drawing has all of it."""
 
 import sys
+import xml.etree.ElementTree
 from pathlib import Path
 
 import bpy
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[3] / "tools" / "pictures"))
+import demo_layout
 import demo_picture
 import demo_scene
 
@@ -73,3 +75,22 @@ def test_cuts_of_the_layout_are_where_the_readme_shows_them():
     near_cuts = np.zeros_like(colorful)
     near_cuts[tuple(cuts.T)] = True
     assert (colorful & grown(near_cuts, NEAR)).sum() > 0.95 * colorful.sum()
+
+
+@pytest.mark.one_blender
+def test_drawing_has_every_face_and_both_sides_of_every_cut(tmp_path):
+    import lsgp
+
+    suzanne = demo_scene.unwrapped_suzanne()
+    _, measured = demo_scene.measure(lsgp, suzanne)
+    cones = demo_scene.marked_cones(suzanne)
+    demo_layout.write_layout(suzanne, measured.cut_edges, cones, tmp_path / "map.svg")
+    _, faces, *lines = xml.etree.ElementTree.parse(tmp_path / "map.svg").getroot()
+    assert faces.get("d").count("Z") == len(suzanne.data.polygons)
+
+    cuts = [line for line in lines if line.get("stroke") not in (None, demo_layout.BORDER)]
+    steps = [line.get("d").count("L") for line in cuts]
+    assert sum(steps) == 2 * len(measured.cut_edges)
+    assert all(line.get("d").count("M") == 2 for line in cuts)
+    places = [line for line in lines if line.get("r")]
+    assert len(places) >= len(cones) > 0  # a cone has a place for each of its cuts
