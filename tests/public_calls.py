@@ -162,7 +162,6 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.find_stacks(FREE_RESULT.corner_uv, FREE_RESULT.island).stacked,
         {"corner_uv": FREE_RESULT.corner_uv},
     ),
-    "packer_name": (lsgp.packer_name, {}),
     "draw_layout": (lsgp.draw_layout, {"surface": WHOLE, "result": FREE_RESULT, "size": 64}),
     "pad_image": (
         lsgp.pad_image,

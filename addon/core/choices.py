@@ -99,8 +99,7 @@ class TextureProperties:
     )
     margin: bpy.props.IntProperty(
         name="Margin",
-        description="Texels to keep free around each island in a texture of this size; approximate for Paint if "
-        "Blender's packer is used",
+        description="Texels to keep free around each island in a texture of this size",
         default=4,
         min=0,
         soft_max=64,

@@ -65,7 +65,7 @@ from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .io.png_files import write_png
 from .layouts.islands import correct_aspect, fit_placement
-from .layouts.packing import pack_islands, packer_name
+from .layouts.packing import pack_islands
 from .layouts.stacking import Stacks, find_stacks
 from .layouts.texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
@@ -154,7 +154,6 @@ __all__ = [
     "measure_distortion",
     "overlapping_triangles",
     "pack_islands",
-    "packer_name",
     "pad_image",
     "pad_mip_levels",
     "parameterize",

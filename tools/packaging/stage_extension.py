@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build the Blender extension: the add-on, its manifest and wheels of the native library and of a packer in one zip.
+"""Build the Blender extension: the add-on, its manifest and wheels of the native library in one zip.
 
     python tools/packaging/stage_extension.py --wheel WHEEL [--wheel WHEEL ...] [--out dist] [--any-blender]
         [--blender-ext FILE]
 
-All wheels are for one version of Python, each for another platform. Those of xatlas for the same platforms are
-downloaded by pip; where there is none, the add-on packs islands with Blender's packer. Writes OUT/cone_unwrap/ (the
-staged folder) and OUT/cone_unwrap-VERSION-BLENDERS.zip (the same content), then checks the zip with Blender's own
-validator: ``blender_ext.py`` of the bpy package this Python has, or the one named.
+All wheels are for one version of Python, each for another platform. Writes OUT/cone_unwrap/ (the staged folder) and
+OUT/cone_unwrap-VERSION-BLENDERS.zip (the same content), then checks the zip with Blender's own validator:
+``blender_ext.py`` of the bpy package this Python has, or the one named.
 """
 
 from __future__ import annotations
@@ -25,8 +24,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 ZIP_TIME = (1980, 1, 1, 0, 0, 0)
-# Layouts depend on its version.
-PACKER = "xatlas==0.0.11"
 
 
 @dataclass(frozen=True)
@@ -68,27 +65,6 @@ def platform(wheel: Path) -> str:
     if found is None:
         raise SystemExit(f"stage_extension: {wheel.name} is for the platform {tag}, which Blender does not have")
     return f"{SYSTEMS[found[1]]}-{MACHINES[found[2]]}"
-
-
-def accepted_tags(wheel: Path) -> list[str]:
-    """Tags of wheels that run wherever this one does, as pip names platforms."""
-    tags = wheel.stem.split("-")[-1].split(".")
-    if "linux" not in tags[0]:
-        return tags
-    # Blender 4.2 and later require glibc 2.28 or newer; wheels for older versions run there as well.
-    machine = re.search(r"linux(?:_\d+_\d+|\d+)?_(.+)", tags[0])[1]
-    return [*(f"manylinux_2_{minor}_{machine}" for minor in range(28, 16, -1)), f"manylinux2014_{machine}"]
-
-
-def download_packer(wheel: Path, folder: Path) -> None:
-    """Download the packer's wheel for the Python and platform of this one; prints a line if there is none."""
-    python = wheel.stem.split("-")[-3].removeprefix("cp")
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--only-binary=:all:", f"--dest={folder}"]
-    target = [f"--python-version={python}", *(f"--platform={tag}" for tag in accepted_tags(wheel))]
-    done = subprocess.run([*pip, *target, PACKER], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        reason = (done.stderr.strip().splitlines() or ["pip failed"])[-1]
-        print(f"stage_extension: {platform(wheel)} goes without {PACKER}: {reason}", file=sys.stderr)
 
 
 def staged_manifest(wheels: list[Path], blenders: Blenders | None) -> str:
@@ -133,7 +109,6 @@ def stage(wheels: list[Path], out: Path, blenders: Blenders | None) -> Path:
     (folder / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy2(wheel, folder / "wheels")
-        download_packer(wheel, folder / "wheels")
     manifest = staged_manifest(list((folder / "wheels").iterdir()), blenders)
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
     return folder

@@ -22,7 +22,7 @@ from ...core.region import Region
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
 from ..layouts.densities import at_density
-from ..layouts.maps import final_layouts, packing_of_preset, tiny_findings
+from ..layouts.maps import PackSettings, final_layouts, tiny_findings
 from ..tasks.cuts import cut_choice
 from ..tasks.directions import direction_choice
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
@@ -162,10 +162,10 @@ def _layouts(
     layouts = [unwrapped.corner_uv for unwrapped in solved]
     packing = unwrap_options.packing_of(args)
     if args.preset is not None or packing is not None:
-        pack = packing_of_preset(
-            args.preset or "bake",
+        pack = PackSettings(
+            True,
+            solved[0].result.seamless is not None,
             MARGIN if packing is None or packing.margin is None else packing.margin,
-            by_cells=solved[0].result.seamless is not None,
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
         layouts = final_layouts(solved, replace(pack, stack=args.stack))

@@ -34,15 +34,12 @@ if TYPE_CHECKING:
 TEXTURE_SIZE = 1024
 """Side, in texels, of the texture for which errors of seams are reported."""
 
-FILLED = 0.6
-"""Part of the square that packed islands usually fill."""
-
 
 @dataclass(frozen=True, slots=True)
 class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
-    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells, and islands are not turned where the
+    margin, turned, udim: as of `packing.pack`; udim not by cells, and islands are not turned where the
     texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
     islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
@@ -50,20 +47,12 @@ class PackSettings:
 
     pack: bool
     by_cells: bool
-    margin_method: str
     margin: float
     turned: bool = True
     udim: int = 1
     texels: lsgp.TexelLayout | None = None
     unit: float = 1.0
     stack: str | None = None
-
-
-def packing_of_preset(preset: str, margin: float, *, by_cells: bool, udim: int = 1) -> PackSettings:
-    """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
-    # Blender's packer takes several passes for exact margins, which are for textures that are computed to the texel.
-    exact = preset == "bake" or packing.is_tight()
-    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, udim=udim)
 
 
 def turned_for(regions: Iterable[Region], settings: PackSettings) -> PackSettings:
@@ -94,7 +83,7 @@ def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tupl
 
 def _packed(parts: Sequence[Islands], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
     def pack(kept: Sequence[Islands]) -> list[NDArray[np.float64]]:
-        return packing.pack(kept, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
+        return packing.pack(kept, settings.margin, turned=settings.turned, udim=settings.udim)
 
     if settings.stack is None:
         return pack(parts), 0
@@ -110,13 +99,10 @@ def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]
 
 
 def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
-    """The islands of each map, at one scale for all objects but for their density weights; those with pins keep theirs.
-
-    Together they have about the area that they will have, so that a margin that is added before the packer scales them
-    is about what was asked for.
-    """
+    """The islands of each map, at one scale for all objects but for their density weights; those with pins keep
+    theirs."""
     sizes = np.array([size_in_texels(unwrapped.region, unwrapped.result.solved) for unwrapped in solved])
-    sizes *= np.sqrt(FILLED / (sizes**2).sum())
+    sizes /= np.sqrt((sizes**2).sum())
     parts = []
     for unwrapped, size in zip(solved, sizes, strict=True):
         part = unwrapped.islands()

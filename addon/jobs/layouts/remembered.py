@@ -17,7 +17,6 @@ import numpy as np
 
 from ...core.digest import digest_of
 from ..tasks.unwrapping import Unwrapped, UnwrapTask, unwrap, unwrap_all
-from . import packing
 
 if TYPE_CHECKING:
     from ..tasks.solving import Progress
@@ -63,7 +62,6 @@ def forget(*_: Any) -> None:
     """Called by Blender when another file is opened."""
     with _lock:
         _kept.clear()
-    packing.forget()
 
 
 def register() -> None:

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.islands import Islands
 from ..layouts import packing
-from ..layouts.maps import FILLED, PackSettings
-from ..tasks.areas import total_area
+from ..layouts.maps import PackSettings
 
 # Of a tile; coordinates have single precision.
 ROUNDING = 1e-5
@@ -67,11 +66,11 @@ class Placement:
     pinned: NDArray[np.bool_]
     aspect: float
 
-    def islands(self, scale: float) -> Islands:
-        """For the packer, at a scale."""
+    def islands(self) -> Islands:
+        """For the packer."""
         inside = self.now.island >= 0
         _, island = np.unique(self.now.island[inside], return_inverse=True)
-        corners = scale * self.now.corner_uv[inside]
+        corners = self.now.corner_uv[inside]
         return Islands(
             self.triangles[inside], corners, island.ravel().astype(np.int32), self.pinned[inside], self.aspect
         )
@@ -112,14 +111,10 @@ def _is_needed(placements: Sequence[Placement]) -> bool:
 
 def _packed(placements: Sequence[Placement], settings: PackSettings) -> list[Layout]:
     """With all islands packed together, as they are but for one scale."""
-    area = sum(total_area(placement.islands(1.0).corner_uv) for placement in placements)
-    # So that a margin that is added before scaling is about what was asked for.
-    scale = 1.0 if any(placement.pinned.any() for placement in placements) else np.sqrt(FILLED / area)
-    parts = [placement.islands(scale) for placement in placements]
+    parts = [placement.islands() for placement in placements]
     packed = iter(
         packing.pack(
             [part for part in parts if len(part.triangles)],
-            settings.margin_method,
             settings.margin,
             turned=settings.turned,
             udim=settings.udim,

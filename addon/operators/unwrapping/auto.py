@@ -25,7 +25,7 @@ from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.layouts.maps import PackSettings, map_summary, packing_of_preset, stacked_layouts, write_map
+from ...jobs.layouts.maps import PackSettings, map_summary, stacked_layouts, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.unwrapping import USUAL_TARGET, Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
@@ -284,8 +284,8 @@ class UV_OT_cone_auto_unwrap(
 
     def _packing(self) -> PackSettings:
         size = int(self.texture_size)
-        by_cells, preset = self.preset == "TILE", PRESETS[self.preset][0]
-        pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, udim=self.udim)
+        by_cells = self.preset == "TILE"
+        pack = PackSettings(True, by_cells, self.margin / size, udim=self.udim)
         if by_cells:
             return pack
         if self.scale == "FILL":

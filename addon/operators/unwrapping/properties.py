@@ -34,11 +34,6 @@ OVERLAPS: Choices = {
         "Cut islands further until none overlaps itself; both sides of every cut still match",
     ),
 }
-MARGIN_METHODS = (
-    ("SCALED", "Scaled", "Use scale of existing UVs to multiply margin"),
-    ("ADD", "Add", "Just add the margin, ignoring any UV scale"),
-    ("FRACTION", "Fraction", "Specify a precise fraction of final UV output"),
-)
 
 
 class UnwrapProperties(DirectionProperty, StrokesProperty):
@@ -86,13 +81,19 @@ class UnwrapProperties(DirectionProperty, StrokesProperty):
     )
     pack: bpy.props.BoolProperty(
         name="Pack Islands",
-        description="Pack the islands of all objects together with Blender's packer; islands with pins stay. "
+        description="Pack the islands of all objects together; islands with pins stay. "
         "In a seamless layout islands are only moved side by side by whole tiles",
         default=True,
     )
-    margin_method: bpy.props.EnumProperty(name="Margin Method", items=MARGIN_METHODS)
     margin: bpy.props.FloatProperty(
-        name="Margin", description="Space between islands", default=0.001, min=0.0, max=1.0, precision=3
+        name="Margin",
+        description="Around each island and along the edges of the UV square, of its side; narrower where that leaves "
+        "no room",
+        default=0.001,
+        min=0.0,
+        soft_max=0.1,
+        max=0.5,
+        precision=3,
     )
 
     def draw_placement(self, layout: bpy.types.UILayout) -> None:
@@ -107,7 +108,6 @@ class UnwrapProperties(DirectionProperty, StrokesProperty):
             return
         layout.prop(self, "pack")
         if self.pack and not self.seamless:
-            layout.prop(self, "margin_method")
             layout.prop(self, "margin")
 
 
@@ -144,4 +144,4 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
 def pack_settings(chosen: bpy.types.OperatorProperties) -> PackSettings:
     """How these properties ask islands to be placed."""
     pack = chosen.pack and not chosen.keep_placement
-    return PackSettings(pack, chosen.seamless, chosen.margin_method, chosen.margin)
+    return PackSettings(pack, chosen.seamless, chosen.margin)

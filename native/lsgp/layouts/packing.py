@@ -3,11 +3,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
@@ -42,16 +39,14 @@ _STACKING = 0.3
 # Of coordinates whose squares do not overflow.
 _MOST_EXPONENT = 300
 
-# What was packed, by digests of islands and how. None: nothing is kept.
-_kept: ContextVar[dict[tuple[object, ...], FloatArray] | None] = ContextVar("kept", default=None)
-
 
 @dataclass(frozen=True, slots=True)
 class LaidOut:
-    """A result with its islands laid out, who packed them, and (m,) bool, the triangles that lie on those of others."""
+    """A result with its islands laid out, how they are packed, and (m,) bool, the triangles that lie on those of
+    others."""
 
     result: Result
-    packer: str
+    pack: Pack
     stacked: NDArray[np.bool_]
 
 
@@ -92,22 +87,6 @@ class Packing:
     def is_tight(self) -> bool:
         """Whether a tight layout is attempted."""
         return self.pack != SHELVES
-
-
-def packer_name() -> str:
-    """Who packs tight layouts."""
-    return "lsgp"
-
-
-@contextmanager
-def packing_once() -> Iterator[None]:
-    """Within it, islands that were packed in the same way before are not packed again: maps are packed to be compared,
-    and the chosen one once more as the result."""
-    token = _kept.set({})
-    try:
-        yield
-    finally:
-        _kept.reset(token)
 
 
 def pack_islands(
@@ -173,16 +152,7 @@ def pack_islands(
         )
     if not len(solved):
         return uv.copy()
-    kept = _kept.get()
-    how = (value.tobytes() if isinstance(value, np.ndarray) else value for value in options.values())
-    asked = _digest(uv, island), *how
-    if kept is not None and asked in kept:
-        tell(progress, 1.0)
-        return kept[asked].copy()
-    out = _packed_at_unit_size(uv, island, solved, options, progress)
-    if kept is not None:
-        kept[asked] = out.copy()
-    return out
+    return _packed_at_unit_size(uv, island, solved, options, progress)
 
 
 def _packed_at_unit_size(
@@ -285,13 +255,6 @@ def _lock_flags(locks: Mapping[Kept, Sequence[int]] | None, count: int) -> NDArr
     return flags
 
 
-def _digest(uv: FloatArray, island: IndexArray) -> bytes:
-    digest = hashlib.blake2b(repr(uv.shape).encode())
-    digest.update(np.ascontiguousarray(uv))
-    digest.update(np.ascontiguousarray(island))
-    return digest.digest()
-
-
 def _margin(margin: float, fill: bool, width: float = 1.0) -> float:
     remedy = "pass a margin from 0, less than half of the area's width"
     found = arguments.number("margin", margin, remedy)
@@ -319,23 +282,24 @@ def laid_out(
     none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
         return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)
-    name, turned = packer_name(), turns_of(result)
+    turned = turns_of(result)
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)
         packed, stacked = _packed(scaled, packing.stack, packing.margin, fill=False, turned=turned, progress=progress)
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
-        return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), name, stacked)
+        return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
     margin = DEFAULT_MARGIN if packing.margin is None else packing.margin
+    pack: Pack = "tight"
     try:
         packed, stacked = _packed(result, packing.stack, margin, turned=turned, udim=packing.udim, progress=progress)
     except InputError:
         if packing.pack == "tight" or packing.udim is not None or packing.stack is not None:
             raise
-        name, packed, stacked = SHELVES, result, none
+        pack, packed, stacked = SHELVES, result, none
         tell(progress, 1.0)
-    return LaidOut(packed if texels is None else at_texel_density(surface, packed, texels), name, stacked)
+    return LaidOut(packed if texels is None else at_texel_density(surface, packed, texels), pack, stacked)
 
 
 def _packed(

@@ -16,7 +16,7 @@ from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
 from ..errors import InputError, SolverError
-from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
+from ..layouts.packing import Pack, Packing, Stack, laid_out
 from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, with_tiny_findings
 from ..options import Options, Seamless
 from ..results import Result
@@ -104,11 +104,11 @@ def auto_unwrap(
         as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
         quarter of the edges cut, and a tenth of the filled part of the square (a fifth where it saves one island of
-        few, three tenths where it saves two, or a tenth of many), packed tightly if the packer is installed. Where two
-        fifths of the cuts are saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual
-        map is isometric. Where symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these
-        save them. Where that costs more, only those components are symmetric on which it costs 1 % of L2 stretch, a
-        quarter of the edges cut, and no island at most. Only without cones and `count`.
+        few, three tenths where it saves two, or a tenth of many), packed tightly. Where two fifths of the cuts are
+        saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual map is isometric. Where
+        symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these save them. Where that
+        costs more, only those components are symmetric on which it costs 1 % of L2 stretch, a quarter of the edges cut,
+        and no island at most. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
         half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
         0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
@@ -118,7 +118,7 @@ def auto_unwrap(
         two only without cones, `count` or pins. In seamless layouts on squares, without marked cones and seams: those
         of hard components of which less than three quarters (of marked features, if there are any) could run along the
         lattice otherwise, or at an L2 stretch above 1.1, if that is worth it; all other cuts stay invisible.
-    pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
+    pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight, unless the margins leave no room. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
         a texel density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
@@ -165,16 +165,15 @@ def auto_unwrap(
 
         return best_at_creases(choices, options, make, progress)
 
-    with packing_once():
-        mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
-        found = best_for_strokes(surface, chosen, mapped, mapping)
-        surface, result = found[0], found[2]
-        if pins is None:
-            result = best_division(found, chosen, solvers, share_of(mapping, 1.0, 1.0))
-        if packs:
-            result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
-        elif texels is not None:
-            result = at_texel_density(surface, result, texels)
+    mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
+    found = best_for_strokes(surface, chosen, mapped, mapping)
+    surface, result = found[0], found[2]
+    if pins is None:
+        result = best_division(found, chosen, solvers, share_of(mapping, 1.0, 1.0))
+    if packs:
+        result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
+    elif texels is not None:
+        result = at_texel_density(surface, result, texels)
     return with_tiny_findings(result)
 
 

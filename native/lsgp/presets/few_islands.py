@@ -11,7 +11,7 @@ from ..options import Options
 from ..results import Result
 from ..surface import Surface
 from .components import Components
-from .map_comparison import ISLANDS_FOR_ONE, can_be_packed, is_as_good, island_count, measure_of_filling
+from .map_comparison import ISLANDS_FOR_ONE, is_as_good, island_count, measure_of_filling
 
 MakeDivided = Callable[[Options], Result | None]
 
@@ -37,8 +37,6 @@ def best_of_few(
     usual: of the surface, with islands made compact as the options say. divide: makes the map with other options; None
     if it cannot be made. progress: of packing.  Raises Cancelled.
     """
-    if not can_be_packed(usual):
-        return usual
     filled = measure_of_filling(usual, 1.0, progress)
     whole = None
     if island_count(usual) > 1 and island_count(usual) > Components.of(surface).count:

@@ -14,7 +14,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
 from ..errors import InputError
 from ..lattice import island_boxes
-from ..layouts.packing import Turned, pack_islands, packer_name, turns_of
+from ..layouts.packing import Turned, pack_islands, turns_of
 from ..options import Options
 from ..results import Result
 from ..surface import Surface
@@ -46,9 +46,6 @@ SMALL_MESH = 5000  # triangles
 # What twice as many islands have to fill in addition where islands need not be few.
 _FILLED_FOR_TWICE = 0.3
 _PAIR = 2
-# More than this lie on shelves too differently to compare them; packing more than that takes long.
-_FEW_ISLANDS = 4
-_MOST_PACKED = 32
 # The same for creases along the lattice, and what share of their length has to lie there.
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
@@ -77,9 +74,9 @@ def may_replace_map(
     fifth less, and two fewer, or one for ten, for three tenths. If it cuts at most three fifths of the edges, its
     stretch may be up to 1.05 and the square filled a quarter less, unless the other map is isometric.
 
-    Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly, turned by
-    quarters, if the packer is installed. How far many islands, several squares and seamless layouts are filled follows
-    from the boxes of the islands, and in one square from the longest island. progress: of packing.  Raises Cancelled.
+    Both as from `parameterize`, with islands on shelves, for this share of a square, in which they are packed tightly,
+    turned by quarters. How far several squares and seamless layouts are filled follows from the boxes of the islands.
+    progress: of packing.  Raises Cancelled.
     """
     islands = island_count(usual)
     more = island_count(symmetric) - islands
@@ -108,16 +105,10 @@ def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
     return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
 
 
-def can_be_packed(usual: Result) -> bool:
-    """Whether packing a map tightly tells how well it fills the square, and does not take long."""
-    return packer_name() is not None and island_count(usual) <= _MOST_PACKED
-
-
 def fills_badly(usual: Result, progress: Progress | None = None) -> bool:
-    """Whether two fifths of the square, three tenths with a small mesh, stay empty even if it is packed tightly; False
-    where that cannot be known."""
+    """Whether two fifths of the square, three tenths with a small mesh, stay empty even if it is packed tightly."""
     most = _NEARLY_FILLED if len(usual.island) <= SMALL_MESH else WELL_FILLED
-    return can_be_packed(usual) and _filled_when_packed(usual, progress) < most
+    return _filled_when_packed(usual, progress) < most
 
 
 def may_replace_undivided(divided: Result, usual: Result, progress: Progress | None = None) -> bool:
@@ -325,11 +316,9 @@ def measure_of_filling(
 ) -> Callable[[Result], float]:
     """The measure of how well a map that is compared with the usual one fills its part of the square.  turned: as of
     `pack_islands`."""
-    islands = island_count(usual)
-    has_one_square = square_share <= 1 and usual.seamless is None
-    if has_one_square and islands <= _MOST_PACKED and packer_name() is not None:
+    if square_share <= 1 and usual.seamless is None:
         return partial(_filled_when_packed, progress=progress, turned=turned)
-    return _filled_square if has_one_square and islands <= _FEW_ISLANDS else partial(_filled_boxes, has_one_square)
+    return _filled_boxes
 
 
 def _filled_when_packed(result: Result, progress: Progress | None, turned: Turned = True) -> float:
@@ -343,16 +332,8 @@ def _filled_when_packed(result: Result, progress: Progress | None, turned: Turne
     return uv_area(packed[result.solved])
 
 
-def _filled_square(result: Result) -> float:
-    """The part of the unit square that the islands fill."""
-    return uv_area(result.corner_uv[result.solved])
-
-
-def _filled_boxes(has_one_square: bool, result: Result) -> float:
-    """The part that islands fill of all their boxes, or of the square around the longest one, if that is less."""
+def _filled_boxes(result: Result) -> float:
+    """The part of all their boxes that islands fill."""
     boxes = island_boxes(result.corner_uv, result.island)
-    size = boxes[:, 2:] - boxes[:, :2]
-    room = float(size.prod(axis=1).sum())
-    if has_one_square:
-        room = max(room, float(size.max(initial=0.0)) ** 2)
+    room = float((boxes[:, 2:] - boxes[:, :2]).prod(axis=1).sum())
     return uv_area(result.corner_uv[result.solved]) / room if room > 0 else 1.0

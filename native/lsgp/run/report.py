@@ -266,8 +266,9 @@ def quality_table(
         spread = f"texels per unit, from {texels.minimum:.4g} to {texels.maximum:.4g}"
         rows.append(("texel density", f"{texels.median:.4g}", "", spread))
     if packed is not None:
+        how = "in rows" if packed.pack == "shelves" else "tightly"
         tiles = f" in {packed.tiles} UDIM tiles" if packed.tiles > 1 else ""
-        rows.append(("part of the square", f"{packed.coverage:.4f}", "1", f"packed by {packed.packer}{tiles}"))
+        rows.append(("part of the square", f"{packed.coverage:.4f}", "1", f"packed {how}{tiles}"))
     lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
     lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
     return "\n".join(lines)

@@ -23,7 +23,7 @@ from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, load_importance, load_json, pairs_in
 from ..io.whole_files import write_output
-from ..layouts.packing import laid_out, packing_once
+from ..layouts.packing import Pack, laid_out
 from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..options import Options
 from ..presets.auto_unwrap import (
@@ -75,10 +75,10 @@ FLAWS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """By whom islands were packed, in how many UDIM tiles, and the part of these, or of the unit square, that they
+    """How islands were packed, in how many UDIM tiles, and the part of these, or of the unit square, that they
     cover."""
 
-    packer: str
+    pack: Pack
     coverage: float
     tiles: int = 1
 
@@ -131,16 +131,14 @@ def unwrap_file(
     packing, layout = packing_of(args), texel_layout(args)
     is_tight = packing is not None and packing.is_tight
     mapping = share_of(progress, 0.0, PACKING) if is_tight else progress
-    with packing_once():
-        file, result = _map(args, options, run, mapping, given_format)
-        if packing is not None:
-            with run.stage("pack"):
-                laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
+    file, result = _map(args, options, run, mapping, given_format)
     if packing is not None:
+        with run.stage("pack"):
+            laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
         result = laid.result
         seen = result.solved & ~laid.stacked & ~_duplicates(result)
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
-        run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
+        run.packed = Packed(laid.pack, uv_area(result.corner_uv[seen]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
     result = with_tiny_findings(result)

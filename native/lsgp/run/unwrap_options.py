@@ -417,8 +417,7 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         metavar="N",
         type=_tiles_option,
         help="spread the islands over at most N UDIM tiles 1001, 1002, ..., each island inside one tile of the "
-        "texture's size: in rows with --texel-density; without it as large as possible, which requires pip install "
-        "'lsgp[pack]' (default: one square)",
+        "texture's size: in rows with --texel-density; without it as large as possible (default: one square)",
     )
     texels.add_argument(
         "--margin",
@@ -433,8 +432,8 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
     unwrap.add_argument(
         "--pack",
         choices=get_args(Pack),
-        help="pack islands tightly, which requires pip install 'lsgp[pack]', or in rows (shelves) (default: tight with "
-        "--preset paint and bake if that is installed, otherwise shelves)",
+        help="pack islands tightly, or in rows (shelves) (default: tight with --preset paint and bake, otherwise "
+        "shelves)",
     )
     unwrap.add_argument(
         "--stack",
@@ -542,7 +541,7 @@ def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
 def packing_of(args: argparse.Namespace) -> Packing | None:
     """How islands are packed; None where they have to stay as they come.
 
-    Raises UsageError where options do not fit; InputError where the packer is not installed.
+    Raises UsageError where options do not fit.
     """
     if _is_seamless(args):
         for name in ("pack", "udim", "stack"):

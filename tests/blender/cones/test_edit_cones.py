@@ -45,7 +45,7 @@ reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.op
 lsgp = addon.core.native.lsgp
 
 SIZE = 400
-AS_THEY_ARE = addon.jobs.layouts.maps.PackSettings(False, False, "SCALED", 0.001)
+AS_THEY_ARE = addon.jobs.layouts.maps.PackSettings(False, False, 0.001)
 PACKED = replace(AS_THEY_ARE, pack=True)
 
 

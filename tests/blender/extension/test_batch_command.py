@@ -270,10 +270,6 @@ def test_a_texel_density_that_the_square_cannot_hold_is_a_warning_or_takes_tiles
 def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     out = tmp_path / "out"
     how = [*preset, "--udim", 2, "--margin", 8, "--texture-size", 512, "--overlaps", "split"]
-    if addon.core.native.lsgp.packer_name() is None:
-        assert run(scaled, "--out", out, *how, "--no-pictures") == 2
-        assert not out.exists()
-        return
     assert run(scaled, "--out", out, *how, "--no-pictures") == 0
     bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
     objects = [bpy.data.objects[name] for name in ("Plain", "Scaled", "Twin")]
@@ -309,8 +305,6 @@ def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, ho
 @pytest.mark.one_blender
 @pytest.mark.parametrize("options", [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1]])
 def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
-    if "tight" in options and addon.core.native.lsgp.packer_name() is None:
-        options = ["--pack", "shelves"]
     sized = ["--texture-size", 512] if "tight" in options else []
     assert run(scaled, "--out", tmp_path / "out", "--preset", "bake", *options, *sized) == 3
     (line,) = lines_of(tmp_path / "out")

@@ -16,7 +16,7 @@ OPTIONS = (
     PLAIN | {"seamless": True},
     PLAIN | {"mode": "LOW_STRETCH"},
     PLAIN | {"prescription": "HARMONIC"},
-    PLAIN | {"pack": True, "margin_method": "FRACTION", "margin": 0.02},
+    PLAIN | {"pack": True, "margin": 0.02},
 )
 
 

@@ -6,7 +6,6 @@ import math
 import bpy
 import numpy as np
 import pytest
-from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_texture, changed, covered_twice, snapshot
 
 
@@ -95,10 +94,6 @@ def test_an_image_that_is_not_square_has_no_one_density():
 def test_an_object_has_as_many_times_the_density_of_others_as_its_weight_says(preset, options):
     plain, fine, coarse = cubes(3)
     fine.cone_unwrap_density_weight, coarse.cone_unwrap_density_weight = 2, 0.5
-    if options == {"udim": 2} and addon.core.native.lsgp.packer_name() is None:
-        with pytest.raises(RuntimeError, match="this extension has no packer"):
-            unwrap(preset=preset, scale="FILL", **options)
-        return
     assert unwrap(preset=preset, **({"scale": "FILL"} | options)) == {"FINISHED"}
     found = np.array([density(obj, 512) for obj in (plain, fine, coarse)])
     assert found / found[0] == pytest.approx([1, 2, 0.5], rel=1e-4)

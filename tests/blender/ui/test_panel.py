@@ -80,9 +80,8 @@ def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
     low_stretch = {"stretch", "use_weights"}
     weights = {"weight_group", "weight_factor"}
     straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
-    margins = {"margin_method", "margin"}
     assert plain.keys() == everything - low_stretch - weights - straight - {"straight_angle"} - SEAMLESS_ONLY
-    assert margins <= plain.keys()
+    assert "margin" in plain
     assert panel(mode="LOW_STRETCH").keys() - plain.keys() == low_stretch | straight
     assert panel(mode="LOW_STRETCH", use_weights=True).keys() - plain.keys() == low_stretch | straight | weights
     with_creases = panel(mode="LOW_STRETCH", straight_creases=True)
@@ -95,7 +94,7 @@ def test_options_of_seamless_layouts_are_drawn_only_with_it():
     straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
     of_grid = {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe", "straight_places"}
     assert seamless.keys() - plain.keys() == of_grid | straight
-    assert plain.keys() - seamless.keys() == {"correct_aspect", "margin_method", "margin"}
+    assert plain.keys() - seamless.keys() == {"correct_aspect", "margin"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
     assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
     by_density = panel(seamless=True, tile_fit="DENSITY").keys()
@@ -105,13 +104,12 @@ def test_options_of_seamless_layouts_are_drawn_only_with_it():
     assert seamless["parity"] and not panel(seamless=True, lattice="HEXAGON")["parity"]
 
 
-def test_margins_are_drawn_where_blenders_packer_is_used():
+def test_the_margin_is_drawn_where_islands_are_packed():
     def drawn(**options):
         names = panel(**options)
-        return {name: name in names for name in ("margin", "margin_method", "keep_placement", "pack")}
+        return {name: name in names for name in ("margin", "keep_placement", "pack")}
 
-    packer = {"margin": True, "margin_method": True}
-    no_packer = {"margin": False, "margin_method": False}
+    packer, no_packer = {"margin": True}, {"margin": False}
     assert drawn() == packer | {"keep_placement": True, "pack": True}
     assert drawn(pack=False) == no_packer | {"keep_placement": True, "pack": True}
     # What keeps its place is not packed.
@@ -148,7 +146,7 @@ def test_without_panels_in_a_popup_all_properties_are_drawn(monkeypatch):
 
 
 def test_every_property_has_a_tooltip_in_blenders_manner():
-    told = {prop.identifier: prop for prop in our_properties() if prop.identifier != "margin_method"}
+    told = {prop.identifier: prop for prop in our_properties()}
     assert told.keys() >= SEAMLESS_ONLY | {"seamless"}
     for prop in told.values():
         assert prop.name and prop.description and not prop.description.endswith(".")

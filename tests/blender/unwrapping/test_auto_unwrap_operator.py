@@ -381,7 +381,7 @@ def test_an_island_that_is_alone_is_as_large_as_it_can_be():
         np.zeros((len(uv_map.triangles), 3), bool),
         1.0,
     )
-    (packed,) = addon.jobs.layouts.packing.pack([islands], "ADD", 16 / 1024)
+    (packed,) = addon.jobs.layouts.packing.pack([islands], 16 / 1024)
     assert np.ptp(packed.reshape(-1, 2), axis=0).max() == pytest.approx(1 - 32 / 1024, abs=1e-6)
     first, second = packed[:, 1] - packed[:, 0], packed[:, 2] - packed[:, 0]
     area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum() / 2

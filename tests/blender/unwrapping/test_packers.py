@@ -1,41 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Auto Unwrap packs with xatlas if the extension includes it, otherwise with Blender's packer."""
+"""Islands of all objects are packed together, with their margins, beside what is pinned and on any image."""
 
 import bpy
 import numpy as np
 import pytest
 from installed import addon
-from one_blender import one_blender
 from scenes import UvMap, add_cone_cube, add_cube, add_grid, add_texture, covered_twice, pin
 
 pytestmark = pytest.mark.slow
 
-lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.packing, addon.jobs.layouts.blender_packer
+packing = addon.jobs.layouts.packing
 TEXELS = 512
-# There is no xatlas for some Pythons.
-HAS_XATLAS = lsgp.packer_name() is not None
-
-
-@pytest.fixture(params=[*one_blender("xatlas"), "Blender"] if HAS_XATLAS else ["Blender"])
-def packer(request, monkeypatch):
-    """Each packer in turn: with xatlas hidden, or as the extension was installed."""
-    if request.param == "Blender":
-        monkeypatch.setattr(lsgp, "packer_name", lambda: None)
-    return request.param
-
-
-@pytest.fixture
-def runs(monkeypatch):
-    """Names of the packers that run, in their order."""
-    found = []
-
-    def watch(owner, name, label):
-        run = getattr(owner, name)
-        monkeypatch.setattr(owner, name, lambda *given, **named: (found.append(label), run(*given, **named))[1])
-
-    watch(lsgp, "pack_islands", "xatlas")
-    watch(packing, "pack_once", "Blender")
-    return found
 
 
 def unwrap(**options):
@@ -83,64 +58,96 @@ def gap_between_islands(corners, owner):
 
 
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
-def test_islands_are_apart_and_all_of_one_density(packer, runs, preset):
+def test_islands_are_apart_and_all_of_one_density(preset):
     objects = add_scene()
     assert unwrap(preset=preset, margin=8) == {"FINISHED"}
-    assert set(runs) == {packer}
     corners, owner = complex_corners(objects)
     assert len(np.unique(owner)) >= 6
     assert covered_twice(map(UvMap, objects)) == 0
     around = min(corners.real.min(), corners.imag.min(), 1 - corners.real.max(), 1 - corners.imag.max())
-    if packer == "xatlas" or preset == "BAKE":
-        assert TEXELS * around >= 8 * (1 - 1e-3)
-        assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
+    assert TEXELS * around >= 8 * (1 - 1e-3)
+    assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
     surfaces = [obj.scale.x**2 * sum(face.area for face in obj.data.polygons) for obj in objects]
     density = [np.sqrt(area(UvMap(obj)) / surface) for obj, surface in zip(objects, surfaces, strict=True)]
     assert max(density) / min(density) < 1.001
 
 
-@pytest.mark.parametrize(("enough", "may_turn"), [(0.0, False), (1.0, True)])
-def test_blenders_packer_turns_no_islands_where_they_fill_enough_without(enough, may_turn, runs, monkeypatch):
-    """Turning the two islands of a cube by quarters takes it seconds."""
-    monkeypatch.setattr(lsgp, "packer_name", lambda: None)
-    monkeypatch.setattr(packing, "ENOUGH_UNTURNED", enough)
-    cube = add_cube("Cube")
-    assert unwrap() == {"FINISHED"}
-    # Other Blenders may fill the square less.
-    assert bpy.app.version[:2] != (4, 5) or area(UvMap(cube)) > 0.6
-    assert (len(runs) > 1) == may_turn and set(runs) == {"Blender"}
-
-
-def test_what_xatlas_cannot_pack_is_for_blenders_packer(packer, runs):
-    """Islands that have to stay where they are, and images that are no squares."""
+def test_others_leave_pinned_islands_their_place_and_margin():
     cubes = [add_cone_cube("First"), add_cone_cube("Second")]
     cubes[0].select_set(True)
     unwrap()
     pin(cubes[0], [0], UvMap(cubes[0]).uv[[0]])
     before = UvMap(cubes[0]).uv
-    runs.clear()
-    unwrap()
-    assert set(runs) == {"Blender"}
+    unwrap(margin=8)
     assert np.abs(UvMap(cubes[0]).uv[0] - before[0]).max() < 1e-6
+    assert TEXELS * gap_between_islands(*complex_corners(cubes)) >= 16 * (1 - 1e-3)
 
 
-def test_a_wide_image_is_for_blenders_packer(packer, runs):
+@pytest.mark.parametrize("shift", [0.3, 0.9, 2.0])
+def test_pinned_islands_may_stick_out_of_the_square(shift):
+    objects = [add_grid("First"), add_cone_cube("Second")]
+    objects[0].select_set(True)
+    unwrap()
+    uv = UvMap(objects[0]).uv
+    # The other islands are packed about where the pinned one was before it was moved.
+    pin(objects[0], [0], uv[[0]] + np.array([shift, 0]))
+    assert unwrap() == {"FINISHED"}
+    first, second = map(UvMap, objects)
+    assert np.abs(first.uv[0] - uv[0] - np.array([shift, 0])).max() < 1e-5
+    assert first.uv[:, 0].max() > 1
+    assert second.uv.min() >= 0 and second.uv.max() <= 1
+    assert covered_twice([first, second]) == 0
+
+
+@pytest.mark.parametrize("wide", [True, False])
+def test_islands_are_not_distorted_on_images_that_are_no_squares(wide):
     parts = [add_grid("First"), add_cone_cube("Second")]
     parts[0].select_set(True)
+    size = (256, 64) if wide else (64, 256)
     for part in parts:
-        add_texture(part, 256, 64)
+        add_texture(part, *size)
     unwrap()
-    assert set(runs) == {"Blender"}
+    maps = list(map(UvMap, parts))
+    assert covered_twice(maps) == 0
+    for uv_map in maps:
+        corners = (uv_map.uv * np.array(size) / 256)[uv_map.triangles]
+        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        assert (sides.max(axis=1) / sides.min(axis=1)).max() == pytest.approx(2**0.5, rel=1e-4)
+    # More than a square inside the image could have.
+    assert sum(area(uv_map) for uv_map in maps) > 0.3
+
+
+def test_images_of_several_shapes_share_the_square():
+    parts = [add_grid("First"), add_cone_cube("Second")]
+    parts[0].select_set(True)
+    add_texture(parts[0], 256, 64)
+    add_texture(parts[1], 64, 64)
+    assert unwrap() == {"FINISHED"}
     assert covered_twice(map(UvMap, parts)) == 0
 
 
-def test_margins_without_room_are_made_narrower(packer, runs):
+def test_margins_without_room_are_made_narrower():
     cubes = [add_cube(f"Cube {number}", cuts=1) for number in range(2)]
     for cube in cubes:
         cube.select_set(True)
     assert bpy.ops.uv.cone_auto_unwrap(texture_size="512", margin=240) == {"FINISHED"}
-    assert runs[-1] == "Blender"
     assert covered_twice(map(UvMap, cubes)) == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_triangles_are_clipped_to_the_square(seed):
+    random = np.random.default_rng(seed)
+    triangles = random.uniform(-0.5, 1.5, (20, 3, 2))
+    parts = packing.clipped(triangles, packing.UNIT_SQUARE)
+    assert parts.min() >= -1e-12 and parts.max() <= 1 + 1e-12
+    points = random.uniform(0, 1, (400, 2)) @ (1, 1j)
+
+    def covered(of):
+        a, b, c = (of @ (1, 1j)).T[:, :, None]
+        sides = [((q - p).conj() * (points - p)).imag for p, q in ((a, b), (b, c), (c, a))]
+        return (np.min(sides, axis=0) >= 0).sum(axis=0) + (np.max(sides, axis=0) <= 0).sum(axis=0)
+
+    assert np.array_equal(covered(parts), covered(triangles))
 
 
 def tile_of_islands(objects):
@@ -157,15 +164,10 @@ def tile_of_islands(objects):
 
 
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
-def test_islands_are_spread_over_udim_tiles(packer, runs, preset):
+def test_islands_are_spread_over_udim_tiles(preset):
     objects = add_scene()
     assert unwrap(preset=preset) == {"FINISHED"}
     before = [area(UvMap(obj)) for obj in objects]
-    if packer == "Blender":
-        with pytest.raises(RuntimeError, match="this extension has no packer"):
-            unwrap(preset=preset, udim=2)
-        assert [area(UvMap(obj)) for obj in objects] == before
-        return
     assert unwrap(preset=preset, udim=2, margin=8) == {"FINISHED"}
     assert sorted(set(tile_of_islands(objects))) == [(0, 0), (1, 0)]
     corners, owner = complex_corners(objects)
@@ -186,8 +188,7 @@ def test_udim_tiles_are_refused_where_islands_cannot_be_spread(obstacle):
     if obstacle == "some are pinned":
         pin(objects[0], [0], UvMap(objects[0]).uv[[0]])
     before = [UvMap(obj).uv for obj in objects]
-    told = obstacle if HAS_XATLAS else "has no packer"
-    with pytest.raises(RuntimeError, match=f"UDIM tiles: .*{told}.*, or set UDIM Tiles to 1"):
+    with pytest.raises(RuntimeError, match=f"UDIM tiles: .*{obstacle}.*, or set UDIM Tiles to 1"):
         unwrap(udim=2, **options)
     assert all(np.array_equal(UvMap(obj).uv, uv) for obj, uv in zip(objects, before, strict=True))
 
@@ -199,16 +200,9 @@ def test_an_island_that_is_alone_needs_one_tile():
     assert UvMap(cube).islands() == 1 and uv.min() >= 0 and uv.max() <= 1
 
 
-def test_operators_with_a_margin_method_are_for_blenders_packer(packer, runs):
-    parts = [add_grid("First"), add_cone_cube("Second")]
-    parts[0].select_set(True)
-    assert bpy.ops.uv.cone_unwrap(pack=True, margin=0.01, margin_method="ADD") == {"FINISHED"}
-    assert set(runs) == {"Blender"}
-
-
 @pytest.mark.parametrize("compact", [True, False])
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
-def test_straight_sides_stay_along_the_axes(packer, preset, compact):
+def test_straight_sides_stay_along_the_axes(preset, compact):
     """A cross of six squares has a larger scale where it lies at an angle."""
     bpy.ops.mesh.primitive_cube_add()
     unwrap(preset=preset, compact=compact)
@@ -217,7 +211,7 @@ def test_straight_sides_stay_along_the_axes(packer, preset, compact):
     assert np.abs(along).min(axis=1).max() < 1e-6
 
 
-def test_a_strip_that_is_alone_lies_along_the_diagonal(packer):
+def test_a_strip_that_is_alone_lies_along_the_diagonal():
     """Nothing of it can be divided across, and along an axis it fills an eighth of the square."""
     strip = add_grid("Strip", segments=1)
     strip.data.transform(np.diag([8, 1, 1, 1]))

@@ -147,19 +147,6 @@ def test_objects_alike_share_a_map_and_little_is_kept(made, monkeypatch):
     assert not remembered._kept
 
 
-def test_a_layout_is_not_packed_again_either(monkeypatch):
-    calls, work = [], lsgp.pack_islands
-    monkeypatch.setattr(lsgp, "pack_islands", lambda *a, **k: calls.append(k) or work(*a, **k))
-    cubes = [add_cube(name, cuts=1) for name in "AB"]
-    layouts = []
-    for margin in (4, 8, 4):
-        uv_after(margin=margin)
-        layouts.append([UvMap(cube).uv for cube in cubes])
-    # None where the extension has no packer of its own.
-    assert len(calls) in {0, 2}
-    assert np.array_equal(layouts[0], layouts[2]) and not np.array_equal(layouts[0], layouts[1])
-
-
 @dataclass(frozen=True)
 class Made:
     """What `remembered` takes for a task, and for its map."""

@@ -23,7 +23,7 @@ from scenes import (
     uv_key,
 )
 
-lsgp, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.blender_packer
+lsgp, packing = addon.core.native.lsgp, addon.jobs.layouts.packing
 
 
 def decorate(obj):
@@ -198,13 +198,13 @@ FAILURES = {
         lsgp.SolverError("SOLVER_FAILED", "The equations could not be solved. Clean the mesh."),
         "could not be solved. Clean the mesh",
     ),
-    "packer": (
-        blender_packer,
-        "_run_packer",
-        addon.core.errors.Refused("Blender's packer failed; switch Pack Islands off"),
+    "packer": (lsgp, "pack_islands", MemoryError(), "not enough memory"),
+    "packing": (
+        packing,
+        "pack",
+        addon.core.errors.Refused("no room; switch Pack Islands off"),
         "switch Pack Islands off",
     ),
-    "packer's answer": (blender_packer, "_read_uv", MemoryError(), "not enough memory"),
 }
 
 

@@ -397,7 +397,6 @@ def test_wide_chamfers_unfold_beside_faces(size: tuple[float, float, float], cha
 
 
 def test_faces_with_wide_chamfers_fill_the_square() -> None:
-    pytest.importorskip("xatlas")
     for size in ((1.0, 1.0, 1.0), (1.0, 1.4, 0.8)):
         result = lsgp.auto_unwrap(surface(chamfered_box(size, 0.1)), preset="bake")
         assert uv_area(result.corner_uv) > 0.6

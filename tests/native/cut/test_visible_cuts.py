@@ -89,7 +89,6 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
 def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, preset: str, share: float, most: float) -> None:
     """Relative to the shortest cuts, and at all, with room for other divisions of single ones. Divisions that all weigh
     length as much show more of baked heads and tubes; tubes that are left whole have short cuts anyway."""
-    pytest.importorskip("xatlas", reason="how far islands are divided depends on how they are packed")
     hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
     shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
     assert hidden <= min(share * shortest, most)

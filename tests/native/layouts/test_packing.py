@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 from island_gaps import least_gap
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
-from lsgp import TexelLayout, _lsgp
-from lsgp.layouts import packing
+from lsgp import TexelLayout
 from map_checks import codes, surface
 from other_process import in_another_process
 
@@ -240,25 +239,6 @@ def test_margins_that_leave_no_room_are_refused() -> None:
     uv[3] = np.inf
     with pytest.raises(lsgp.InputError, match="triangle 3"):
         lsgp.pack_islands(uv, island)
-
-
-def test_nothing_is_packed_twice_while_layouts_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    packed, given = [], on_shelves("bake")
-    pack = _lsgp.pack_islands
-
-    def counted(*given: object) -> object:
-        packed.append(given)
-        return pack(*given)
-
-    monkeypatch.setattr(_lsgp, "pack_islands", counted)
-    how = given.corner_uv, given.island
-    with packing.packing_once():
-        first, other, again = (lsgp.pack_islands(*how, margin) for margin in (0.0, 0.01, 0.0))
-    assert len(packed) == 2
-    assert np.array_equal(first, again, equal_nan=True)
-    assert not np.array_equal(first, other, equal_nan=True)
-    lsgp.pack_islands(*how)
-    assert len(packed) == 3  # nothing is kept from one call to the next
 
 
 def test_progress_is_told_and_stops_it() -> None:

@@ -78,7 +78,6 @@ def test_rounding_is_of_no_account_and_triangles_without_an_island_stay() -> Non
 
 @pytest.mark.parametrize("stack", ["same", "mirrored"])
 def test_packed_stacks_share_texels_and_count_as_no_overlaps(stack: str) -> None:
-    pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
     plain = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight")
     result = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", stack=stack)
     count = lsgp.find_stacks(plain.corner_uv, plain.island, mirrored=stack == "mirrored").count
@@ -98,9 +97,6 @@ def test_packed_stacks_share_texels_and_count_as_no_overlaps(stack: str) -> None
     [{"stack": "all"}, {"stack": "same", "pack": "shelves"}, {"stack": "same", "preset": "tile"}],
 )
 def test_what_cannot_be_stacked_is_refused(how: dict) -> None:
-    if "preset" in how:
-        # Without the packer that is said first.
-        pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
     with pytest.raises(lsgp.InputError) as refusal:
         lsgp.auto_unwrap(PARTS, **how)
     assert refusal.value.code == "WRONG_PARAMETER"

@@ -12,6 +12,7 @@ import pytest
 import zoo
 from lsgp.presets import map_comparison
 from lsgp.presets.map_comparison import may_replace_map
+from lsgp.triangles import uv_area
 from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
 from placement_checks import place
@@ -155,9 +156,16 @@ def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None
     assert lsgp.auto_unwrap(given) == lsgp.auto_unwrap(given, symmetric=False)
 
 
+def filled_boxes(result: lsgp.Result, *_: object, **__: object) -> float:
+    """The part that islands fill of all their boxes, or of the square around the longest one, if that is less."""
+    boxes = lsgp.lattice.island_boxes(result.corner_uv, result.island)
+    size = boxes[:, 2:] - boxes[:, :2]
+    return uv_area(result.corner_uv[result.solved]) / max(size.prod(axis=1).sum(), size.max() ** 2)
+
+
 def test_a_symmetric_map_replaces_another_only_at_a_small_cost(monkeypatch: pytest.MonkeyPatch) -> None:
     # How far a packer fills a square with a triangle cut off has no part in it.
-    monkeypatch.setattr(map_comparison, "packer_name", lambda: None)
+    monkeypatch.setattr(map_comparison, "_filled_when_packed", filled_boxes)
     usual = lsgp.auto_unwrap(surface(meshes.merge([meshes.two_horned(1)] * 10)), count=4, preset="bake", pack="shelves")
     islands = int(usual.island.max()) + 1
     assert islands >= 10
@@ -186,13 +194,7 @@ def test_a_symmetric_map_replaces_another_only_at_a_small_cost(monkeypatch: pyte
     assert not may_replace_map(longer, usual) and may_replace_map(longer, usual, square_share=2.0)
 
 
-@pytest.mark.parametrize("packer", ["xatlas 1", None])
-def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square(
-    packer: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if packer is not None:
-        pytest.importorskip("xatlas")
-    monkeypatch.setattr(map_comparison, "packer_name", lambda: packer)
+def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square() -> None:
     whole = replace(lsgp.preset_options("paint"), compact="off")
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, options=whole, pack="shelves")
     assert usual.island.max() == 0
@@ -216,7 +218,6 @@ def with_rectangles(usual: lsgp.Result, count: int, height: float = 1.0) -> lsgp
 
 
 def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
-    pytest.importorskip("xatlas")
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     # One square fills a square, two do half of it, three three quarters, four all of it, and five five ninths.
     replaced = {
@@ -234,7 +235,6 @@ def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
 
 @pytest.mark.parametrize(("before", "filled", "least"), [(2, 1 / 2, 0.8), (3, 3 / 4, 0.7)])
 def test_fewer_islands_may_fill_the_square_less(before: int, filled: float, least: float) -> None:
-    pytest.importorskip("xatlas")
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     squares = with_rectangles(usual, before)
     # A single rectangle fills as much of the square as its height, but for margins.
@@ -243,7 +243,7 @@ def test_fewer_islands_may_fill_the_square_less(before: int, filled: float, leas
 
 
 def test_one_island_fewer_of_many_may_not_fill_the_square_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(map_comparison, "packer_name", lambda: None)
+    monkeypatch.setattr(map_comparison, "_filled_when_packed", filled_boxes)
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     squares = with_rectangles(usual, 12)
     # Strips fill as much of a square that is as wide as they are as their heights add up to.
@@ -281,7 +281,6 @@ class MapsByCuts:
 def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
     usual: int, mirrored: int, free: int, tried: bool, chosen: str
 ) -> None:
-    pytest.importorskip("xatlas")
     unwrapping = lsgp.presets.cone_choices
     result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)), surface(MESH))

@@ -162,8 +162,6 @@ def test_straight_sides_do_not_overlap_where_sides_of_a_cut_coincide(name: str) 
 @pytest.mark.parametrize("pack", ["tight", "shelves"])
 def test_presets_lay_parts_of_machines_along_u_and_v(pack: str) -> None:
     """Everything but the round ends of a capped barrel and the inside of a hollow pipe."""
-    if pack == "tight" and lsgp.packer_name() is None:
-        pytest.skip("no packer")
     radius, height = 1 + 0.06 * np.sin(np.linspace(0, np.pi, 7)), np.linspace(0, 2, 7)
     capped = closed.lathe(radius, height, 24, caps=(True, True))
     result = lsgp.auto_unwrap(surface(capped), preset="paint", pack=pack)

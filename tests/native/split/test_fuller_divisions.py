@@ -16,8 +16,6 @@ from lsgp.triangles import uv_area
 from map_checks import surface
 from zoo import closed, swept
 
-pytest.importorskip("xatlas")
-
 MODELS = {
     **{f"spring of {turns} turns": swept.spring(turns, 10, True) for turns in (2, 3, 4, 6, 7)},
     **{
@@ -34,7 +32,7 @@ MODELS = {
 }
 
 
-def without_packer(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
+def estimated_divisions(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     """The maps as they are divided by the estimate alone."""
     module, before = lsgp.presets.auto_unwrap, []
     original = module.best_division
@@ -53,7 +51,7 @@ def test_divisions_other_than_the_estimated_one_fill_the_square_more(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whichever is chosen: the islands that packers fill a square with best change with the last bits of a mesh."""
-    before = without_packer(monkeypatch)
+    before = estimated_divisions(monkeypatch)
     after = lsgp.auto_unwrap(surface(MODELS[name]), preset="bake")
     usual = before[0]
     filled = uv_area(lsgp.pack_islands(usual.corner_uv, usual.island))
@@ -82,7 +80,7 @@ def test_the_division_that_fills_the_square_most_is_chosen(
     filled: Callable[[int], float], changes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Given what the packer answers, so that it does not hang on what it makes of the islands of this mesh."""
-    before = without_packer(monkeypatch)
+    before = estimated_divisions(monkeypatch)
     monkeypatch.setattr(
         map_comparison, "_filled_when_packed", lambda result, *_, **__: filled(map_comparison.island_count(result))
     )
@@ -147,7 +145,7 @@ def unwrapped_cube() -> lsgp.Result:
 
 def test_only_whole_squares_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     """How islands fill a square together with those of other objects one of them does not tell."""
-    before = without_packer(monkeypatch)
+    before = estimated_divisions(monkeypatch)
     spring = surface(MODELS["spring of 3 turns"])
     for options in (
         replace(lsgp.preset_options("bake"), square_share=0.5),
