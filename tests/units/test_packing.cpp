@@ -11,6 +11,7 @@
 #include "packing/footprint.hpp"
 #include "packing/gaps.hpp"
 #include "packing/outline.hpp"
+#include "packing/separation.hpp"
 #include "packing/sliding.hpp"
 
 using namespace lsgp;
@@ -133,7 +134,7 @@ TEST_CASE("the first free place is that which a look at every texel finds") {
         }
         if (is_free) expected = column;
       }
-      CHECK(taken.first_free(footprint, row, last_column, [](int) { return true; }, looks) == expected);
+      CHECK(taken.first_free(footprint, row, 0, last_column, looks) == expected);
     }
   }
 }
@@ -182,6 +183,33 @@ TEST_CASE("bodies are placed without meeting, at the gap or more, also in holes"
     CHECK(overlapping_pair({placed[1], placed[2]}).first == -1);
     CHECK(any_in_hole);
   }
+}
+
+TEST_CASE("bodies that all lie on each other come apart, at the gap or more, where there is room") {
+  std::mt19937 random(13);
+  Array<Array<Pose>> poses;
+  Array<Index> bodies;
+  for (int k = 0; k < 12; ++k) {
+    bodies.push_back(k);
+    poses.push_back(poses_of(Outline::around_triangles(star(random, 7, 10)), {1, Complex(0, 1)}, 1));
+  }
+  constexpr double gap = 1.7, side = 80;
+  Separation separation(poses, bodies, gap);
+  Array<Placed> placed(poses.size(), Placed{0, 0, 0});
+  double work = 0;
+  REQUIRE(separation.run(side, side, 50, 1e10, placed, random, work));
+  CHECK(work > 0);
+  Array<Outline> outlines;
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    outlines.push_back(poses[b][placed[b].pose].outline.moved(1, placed[b].at));
+    const Box box = outlines.back().box();
+    CHECK(std::min(box.left, box.bottom) >= 0);
+    CHECK(std::max(box.right, box.top) <= side);
+  }
+  CHECK(least_gap(outlines, 5) >= gap * (1 - 1e-12));
+  const Array<Placed> before = placed;
+  CHECK(!separation.run(25, 25, 5, 1e10, placed, random, work));
+  for (std::size_t b = 0; b < poses.size(); ++b) CHECK(placed[b].at == before[b].at);
 }
 
 TEST_CASE("what overlaps is found, also inside") {

@@ -21,7 +21,7 @@ constexpr double cost_of_row = 20, cost_of_look = 2.5, cost_of_pair = 8, cost_of
 constexpr int most_slides = 6;
 constexpr double longest_slide = 2, least_slide = 0.02;
 // Bodies that are not smaller than this part of the first of their class skip the rows in which that found no room.
-constexpr double class_size = 0.9;
+constexpr double class_size = 0.8;
 
 // What a place costs; less is better.
 struct Cost {
@@ -48,6 +48,7 @@ class Tile {
         still_(width_, height_, cell) {
     work_ = cost_of_texel * width_ * height_;
     for (const Outline& outline : space.obstacles) keep(outline);
+    has_obstacles_ = !space.obstacles.empty();
   }
 
   double work() const { return work_; }
@@ -62,14 +63,19 @@ class Tile {
     }
     Candidate best;
     int untried = std::numeric_limits<int>::max();  // the first row that may have room
-    for (int p = 0; p < static_cast<int>(poses.size()); ++p) {
-      if (wanted < 0 || p == wanted) untried = std::min(untried, search(poses[p], p, best));
-    }
+    const auto for_each_pose = [&](auto visit) {
+      for (int p = 0; p < static_cast<int>(poses.size()); ++p) {
+        if (wanted < 0 || p == wanted) visit(poses[p], p);
+      }
+    };
+    for_each_pose([&](const Pose& pose, int p) { untried = std::min(untried, search_inside(pose, p, best)); });
     first_row_ = std::max(first_row_, untried);
+    if (best.pose < 0) for_each_pose([&](const Pose& pose, int p) { search_beyond(pose, p, best); });
     if (best.pose < 0) return std::nullopt;
     const Pose& pose = poses[best.pose];
     const Complex at = slid(pose, Complex(best.column, best.row));
     keep(pose.outline.moved(1, at));
+    if (at.real() + pose.width > used_width_) first_row_ = 0;
     used_width_ = std::max(used_width_, at.real() + pose.width);
     used_height_ = std::max(used_height_, at.imag() + pose.height);
     Placed out;
@@ -96,35 +102,40 @@ class Tile {
     }
   }
 
-  // The row up to which all are full.
-  int search(const Pose& pose, int number, Candidate& best) {
-    const int last_row = static_cast<int>(std::floor(height_ - pose.height));
-    const int last_column = static_cast<int>(std::floor(width_ - pose.width));
+  // Places where the rectangle around all does not grow. Returns the row up to which all are full.
+  int search_inside(const Pose& pose, int number, Candidate& best) {
+    const int last_row = static_cast<int>(std::floor(used_height_ - pose.height));
+    const int last_column = static_cast<int>(std::floor(used_width_ - pose.width));
     if (last_column < 0) return std::numeric_limits<int>::max();
-    int full = std::numeric_limits<int>::max();
-    double looks = 0;
     for (int row = first_row_; row <= last_row; ++row) {
-      if (!(cost_of(pose, 0, row) < best.cost)) {
-        full = std::min(full, row);
-        break;
-      }
-      bool is_cut_short = false;
-      const int column = taken_.first_free(
-          pose.footprint, row, last_column,
-          [&](int from) {
-            is_cut_short = !(cost_of(pose, from, row) < best.cost);
-            return !is_cut_short;
-          },
-          looks);
-      work_ += cost_of_row;
-      checkpoint(operations_a_searched_row);
-      if (column >= 0 || is_cut_short) full = std::min(full, row);
-      if (column < 0) continue;
-      const Cost cost = cost_of(pose, column, row);
-      if (cost < best.cost) best = {cost, number, column, row};
+      if (!(cost_of(pose, 0, row) < best.cost)) return row;
+      if (search_row(pose, number, row, 0, last_column, best)) return row;
     }
-    work_ += cost_of_look * looks;
-    return std::min(full, std::max(last_row + 1, first_row_));
+    return std::max(last_row + 1, first_row_);
+  }
+
+  // Places where it grows.
+  void search_beyond(const Pose& pose, int number, Candidate& best) {
+    // Beyond the gap around what is there, all is free but for obstacles.
+    const double beyond = has_obstacles_ ? std::max(width_, height_) : options_.gap + 2;
+    const int last_row = static_cast<int>(std::floor(std::min(used_height_ + beyond, height_ - pose.height)));
+    const int last_column = static_cast<int>(std::floor(std::min(used_width_ + beyond, width_ - pose.width)));
+    const double last_inside = used_height_ - pose.height;
+    const int beside = std::max(static_cast<int>(std::floor(used_width_ - pose.width)), 0);
+    for (int row = 0; row <= last_row && cost_of(pose, 0, row) < best.cost; ++row)
+      search_row(pose, number, row, row <= last_inside ? beside : 0, last_column, best);
+  }
+
+  // Whether there is a place in a row.
+  bool search_row(const Pose& pose, int number, int row, int begin, int last, Candidate& best) {
+    double looks = 0;
+    const int column = taken_.first_free(pose.footprint, row, begin, last, looks);
+    checkpoint(operations_a_searched_row);
+    work_ += cost_of_row + cost_of_look * looks;
+    if (column < 0) return false;
+    const Cost cost = cost_of(pose, column, row);
+    if (cost < best.cost) best = {cost, number, column, row};
+    return true;
   }
 
   Complex slid(const Pose& pose, Complex at) {
@@ -157,6 +168,7 @@ class Tile {
   double used_width_ = 0, used_height_ = 0;
   double class_extent_ = std::numeric_limits<double>::infinity();
   double work_ = 0;
+  bool has_obstacles_ = false;
   int first_row_ = 0;  // in those before is no room for bodies of the class
 };
 

@@ -35,11 +35,10 @@ class TakenTexels {
   // Takes what lies less than `reach` from an outline, in texels.
   void take(const Outline& outline, double reach);
 
-  // The first column up to `last` in which a footprint is free in a row, looked for 64 columns at a time as long as
-  // goes_on(column) holds; -1 where there is none. looks: counts the spans that are looked up.
-  template <typename GoesOn>
-  int first_free(const Footprint& footprint, int row, int last, GoesOn goes_on, double& looks) const {
-    for (int column = 0; column <= last && goes_on(column); column += BitRows::word_bits) {
+  // The first column from `begin` to `last` in which a footprint is free in a row; -1 where there is none.
+  // looks: counts the spans that are looked up.
+  int first_free(const Footprint& footprint, int row, int begin, int last, double& looks) const {
+    for (int column = begin; column <= last; column += BitRows::word_bits) {
       BitRows::Word taken = 0;
       int looked = 0;
       for (const Span& span : footprint.spans()) {

@@ -24,8 +24,12 @@ constexpr int most_growths = 16;
 // Where so little of the area is filled, sides along the axes are given up for a layout whose side is so much shorter,
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
-// How long better orders are looked for at each effort, in about nanoseconds.
-constexpr double work_of_search[]{5e6, 3e8, 1e10};
+// How long better orders are looked for at each effort, and then smaller squares, in about nanoseconds.
+constexpr double work_of_orders[]{4e6, 6e7, 1e9}, work_of_separation[]{8e6, 2.4e8, 9e9};
+// Of the seconds that are allowed, for orders.
+constexpr double share_of_orders = 0.1;
+// Of more bodies, overlaps of pairs are not looked at.
+constexpr std::size_t most_separated = 200;
 // By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
 constexpr double widened = 1e-9;
 // Outlines are simplified by so much of the side, and by this divided by the root of the number of bodies.
@@ -154,27 +158,42 @@ bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
   return true;
 }
 
+// The side at which an order may need just that side, if it needed `needed` with margins for another one: about as many
+// gaps lie beside each other as bodies do in rows of equal ones.
+double LayoutSearch::balanced_side(double needed, double with_margins_for) const {
+  constexpr double most_share = 0.9;
+  const double width = inside_.right - inside_.left, height = inside_.top - inside_.bottom;
+  const double share =
+      std::min(2 * options_.margin * std::sqrt(static_cast<double>(free_.size()) / (width * height)), most_share);
+  return (needed - share * with_margins_for) / (1 - share);
+}
+
 void LayoutSearch::find_first(const Order& order) {
   double side = options_.fill || grows() ? expected_side_ : 1.0;
   for (int i = 0; i < most_growths; ++i) {
     Attempt found = attempt(order, side, room_to_grow);
     const double needed = found.side;
-    if (take_if_better(order, std::move(found))) return;
-    if (!options_.fill && !(grows() && found.found.missing > 0)) break;
-    side = std::max(needed, side) * growth;
+    const bool is_complete = found.found.missing == 0;
+    if (take_if_better(order, std::move(found))) return tighten(side);
+    if (!options_.fill && !(grows() && !is_complete)) break;
+    side = std::max({needed, side, is_complete && grows() ? balanced_side(needed, side) : 0.0}) * growth;
   }
   refuse(order, side);
 }
 
-// The same order in a smaller square.
-void LayoutSearch::tighten() {
+// The same order in a smaller square.  with_margins_for: the side for which margins have been.
+void LayoutSearch::tighten(double with_margins_for) {
   if (!options_.fill) return;
   if (grows()) {
-    constexpr int most = 3;
-    constexpr double gain = 0.998;
-    for (int i = 0; i < most; ++i) {
-      const double before = now_.side;
-      if (!take_if_better(now_.order, attempt(now_.order, now_.side)) || now_.side > gain * before) return;
+    constexpr int most = 4;
+    constexpr double enough = 1.004, above = 1.003, room = 1.03;
+    double side = with_margins_for, needed = now_.side;
+    for (int i = 0; i < most && (needed > side || side > enough * needed); ++i) {
+      side = std::min(above * std::max(balanced_side(needed, side), 0.5 * now_.side), now_.side);
+      Attempt found = attempt(now_.order, side, room);
+      needed = found.side;
+      if (found.found.missing > 0) return;
+      take_if_better(now_.order, std::move(found));
     }
     return;
   }
@@ -185,18 +204,6 @@ void LayoutSearch::tighten() {
   while (now_.side > near * low) {
     const double middle = (now_.side + std::max(low, now_.side / 2)) / 2;
     if (!take_if_better(now_.order, attempt(now_.order, middle))) low = middle;
-  }
-}
-
-// The same layout with finer texels.
-void LayoutSearch::refine() {
-  if (sizes_depend_on_side()) return;
-  const State coarse = now_;
-  texels_ *= 2;
-  rasterize(now_.side);
-  if (!take_if_better(now_.order, attempt(now_.order, now_.side))) {
-    now_ = coarse;
-    texels_ /= 2;
   }
 }
 
@@ -222,18 +229,10 @@ LayoutSearch::Order LayoutSearch::varied(const Order& order) {
   return out;
 }
 
-void LayoutSearch::vary_order(double work) {
-  using Clock = std::chrono::steady_clock;
-  if (free_.size() < 2) return;  // all of its poses have been tried
-  const bool is_timed = options_.effort == PackingEffort::best && options_.seconds.has_value();
-  const auto begin = Clock::now();
-  const double work_before = work_;
-  const auto done = [&] {
-    if (!is_timed) return (work_ - work_before) / work;
-    return std::chrono::duration<double>(Clock::now() - begin).count() / *options_.seconds;
-  };
+void LayoutSearch::vary_order(const Budget& budget) {
   constexpr double smaller = 0.995;
-  for (double share = 0; share < 1; share = done()) {
+  const double work_before = work_;
+  for (double share = 0; share < 1; share = budget.share(work_ - work_before)) {
     monitor_.advance(share);
     Order order = varied(now_.order);
     Attempt found = attempt(order, grows() ? now_.side : now_.side * smaller);
@@ -246,13 +245,94 @@ void LayoutSearch::vary_order(double work) {
   }
 }
 
+// Slides bodies, those nearest to the low corner first, along both axes until they touch others.
+void LayoutSearch::settle(Constructed& found, double gap) {
+  constexpr double cost_of_look = 8;  // nanoseconds
+  constexpr int rounds = 4;
+  constexpr double longest = 4;
+  Array<Placed>& placed = found.placed;
+  const auto outline = [&](Index b) { return now_.poses[b][placed[b].pose].outline.moved(1, placed[b].at); };
+  for (int round = 0; round < rounds; ++round) {
+    Array<Index> order = free_;
+    const Axis axis = round % 2 == 0 ? Axis::v : Axis::u;
+    const auto place = [&](Index b) { return axis == Axis::u ? placed[b].at.real() : placed[b].at.imag(); };
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return place(a) < place(b); });
+    for (const Index b : order) {
+      StillOutlines others(texels_, texels_, texels_ / std::sqrt(static_cast<double>(free_.size())));
+      const Outline moving = outline(b);
+      const Box box = moving.box();
+      const double reach = longest + gap;
+      const Box near{box.left - reach, box.right + reach, box.bottom - reach, box.top + reach};
+      for (const Index other : free_) {
+        const Pose& pose = now_.poses[other][placed[other].pose];
+        const Complex at = placed[other].at;
+        const Box around_other{at.real(), at.real() + pose.width, at.imag(), at.imag() + pose.height};
+        if (other != b && meet(near, around_other)) others.add(outline(other));
+      }
+      double looks = 0;
+      const double way = others.free_way(moving, axis, gap, std::min(longest, place(b)), looks);
+      work_ += cost_of_look * looks;
+      placed[b].at -= axis == Axis::u ? Complex(way, 0) : Complex(0, way);
+    }
+  }
+  found.width = found.height = 0;
+  for (const Index b : free_) {
+    const Pose& pose = now_.poses[b][placed[b].pose];
+    found.width = std::max(found.width, placed[b].at.real() + pose.width);
+    found.height = std::max(found.height, placed[b].at.imag() + pose.height);
+  }
+}
+
+// Smaller squares, in which bodies overlap at first.
+void LayoutSearch::separate(const Budget& budget) {
+  if (!grows() || options_.snap > 0 || free_.size() > most_separated) return;
+  // By how much smaller the square is tried, after this many failures; then again from the first on.
+  constexpr double shrinks[]{0.99, 0.99, 0.995, 0.995, 0.9975, 0.9975, 0.9975};
+  constexpr std::size_t shrink_count = sizeof(shrinks) / sizeof(shrinks[0]);
+  constexpr int patience = 30;  // rounds
+  const double work_before = work_;
+  // Margins are for the side at which this begins, which is more than for smaller ones.
+  constexpr double too_wide = 1.02;
+  std::optional<Separation> separation;
+  double gap_now = 0;
+  const auto count = static_cast<int>(free_.size());
+  std::size_t failures = 0;
+  for (double share = 0; share < 1; share = budget.share(work_ - work_before)) {
+    monitor_.advance(share);
+    const double gap_needed = gap(now_.side) / now_.texel;
+    if (!separation || gap_now > too_wide * gap_needed) separation.emplace(now_.poses, free_, gap_now = gap_needed);
+    const double factor = shrinks[failures % shrink_count];
+    const double side = now_.side * factor;
+    const double width = ((inside_.right - inside_.left) * side - 2 * tolerance_) / now_.texel;
+    const double height = ((inside_.top - inside_.bottom) * side - 2 * tolerance_) / now_.texel;
+    Attempt tried;
+    tried.found = now_.found;
+    for (const Index b : free_) tried.found.placed[b].at *= factor;
+    for (std::size_t swaps = 0; swaps < std::min<std::size_t>(failures, 3); ++swaps)
+      std::swap(tried.found.placed[free_[below(count)]].at, tried.found.placed[free_[below(count)]].at);
+    const bool is_done = separation->run(width, height, patience, budget.work(), tried.found.placed, random_, work_);
+    if (is_done) {
+      settle(tried.found, gap_now);
+      tried.side = std::max((tried.found.width * now_.texel + 2 * tolerance_) / (inside_.right - inside_.left),
+                            (tried.found.height * now_.texel + 2 * tolerance_) / (inside_.top - inside_.bottom));
+      tried.is_valid = true;
+    }
+    Order order = now_.order;
+    for (const Index b : free_) order.pose[b] = tried.found.placed[b].pose;
+    failures = take_if_better(order, std::move(tried)) ? 0 : failures + 1;
+  }
+}
+
 Array<Motion> LayoutSearch::best() {
   const auto count = static_cast<double>(free_.size());
   expected_side_ = estimated_side();
   double farthest = 0;
   for (const Body& body : bodies_) farthest = std::max(farthest, std::abs(body.origin));
   constexpr double no_size = 1e-200, last_digit = std::numeric_limits<double>::epsilon();
-  constexpr double texels_of_body = 24, least_texels = 128, most_texels = 1024;
+  // Of a body, about, and of the side: more for separation, less for many bodies.
+  const bool is_fine = options_.effort != PackingEffort::quick && count <= most_separated;
+  const double texels_of_body = is_fine ? 40 : 24, least_texels = is_fine ? 256 : 128;
+  constexpr double most_texels = 1024;
   texels_ = static_cast<int>(std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
   if (expected_side_ <= std::max(texels_ * last_digit * farthest, no_size)) {
     throw Error(
@@ -294,9 +374,21 @@ void LayoutSearch::require_enough_blocks() const {
 
 void LayoutSearch::search() {
   find_first(by_size());
-  tighten();
   for (const Index b : free_) now_.order.pose[b] = now_.found.placed[b].pose;
-  vary_order(work_of_search[static_cast<std::size_t>(options_.effort)]);
+  const auto effort = static_cast<std::size_t>(options_.effort);
+  if (free_.size() < 2) return;  // all of its poses have been tried
+  constexpr std::size_t most_quick = 32;
+  if (options_.effort == PackingEffort::quick && free_.size() > most_quick) return;
+  const auto seconds = [&](double share) {
+    return options_.effort == PackingEffort::best && options_.seconds ? std::optional(share * *options_.seconds)
+                                                                      : std::nullopt;
+  };
+  {
+    const ProgressMonitor::Interval part(monitor_, 0, share_of_orders);
+    vary_order(Budget(work_of_orders[effort], seconds(share_of_orders)));
+  }
+  const ProgressMonitor::Interval part(monitor_, share_of_orders, 1);
+  separate(Budget(work_of_separation[effort], seconds(1 - share_of_orders)));
 }
 
 // Whether other turns of bodies that lie along the axes may be worth it, as of long strips.

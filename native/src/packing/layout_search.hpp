@@ -2,13 +2,16 @@
 // The best layout of bodies: the scale at which they fill a rectangle, and the order in which they are placed.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "packing/body.hpp"
 #include "packing/construction.hpp"
+#include "packing/separation.hpp"
 
 namespace lsgp {
 
@@ -16,6 +19,26 @@ namespace lsgp {
 struct Motion {
   int tile = -1;
   Complex factor, shift;
+};
+
+// How long something is looked for: an amount of work, as of `Constructed`, or seconds.
+class Budget {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Budget(double work, std::optional<double> seconds) : work_(work), seconds_(seconds) {}
+
+  double work() const { return work_; }
+
+  // Which part of it is used up, if that much work has been done.
+  double share(double work) const {
+    return seconds_ ? std::chrono::duration<double>(Clock::now() - begin_).count() / *seconds_ : work / work_;
+  }
+
+ private:
+  const double work_;
+  const std::optional<double> seconds_;
+  const Clock::time_point begin_ = Clock::now();
 };
 
 class LayoutSearch {
@@ -63,9 +86,11 @@ class LayoutSearch {
   bool is_hardly_filled() const;
   void require_enough_blocks() const;
   void find_first(const Order& order);
-  void tighten();
-  void refine();
-  void vary_order(double work);
+  double balanced_side(double needed, double with_margins_for) const;
+  void tighten(double with_margins_for);
+  void vary_order(const Budget& budget);
+  void separate(const Budget& budget);
+  void settle(Constructed& found, double gap);
   Order varied(const Order& order);
   int below(int most) { return static_cast<int>(random_() % static_cast<std::uint32_t>(most)); }
   Array<Motion> motions();
