@@ -21,6 +21,8 @@ namespace {
 constexpr double first_fill = 0.65, growth = 1.02, failed_growth = 1.12;
 constexpr double room_to_grow = 1.7;
 constexpr int most_growths = 16;
+// Of the expected side: beyond, margins leave no room, and rasters would get large.
+constexpr double most_growth = 4;
 // Where so little of the area is filled, sides along the axes are given up for a layout whose side is so much shorter,
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
@@ -175,8 +177,10 @@ void LayoutSearch::find_first(const Order& order) {
     const double needed = found.side;
     const bool is_complete = found.found.missing == 0;
     if (take_if_better(order, std::move(found))) return tighten(side);
-    if (!options_.fill && !(grows() && !is_complete)) break;
+    const double most_side = most_growth * expected_side_;
+    if ((!options_.fill && !(grows() && !is_complete)) || side >= most_side) break;
     side = std::max({needed, side, is_complete && grows() ? balanced_side(needed, side) : 0.0}) * growth;
+    side = std::min(side, most_side);
   }
   refuse(order, side);
 }
