@@ -55,9 +55,12 @@ def unwrap_asset(task: Task, settings: Settings) -> Record:
 
 
 def _unwrap(task: Task, settings: Settings) -> Record:
-    with open(task.input, "rb"):
-        pass  # Blender does not tell a missing file from other failures
+    whole_files, output = native.part("io.whole_files"), Path(task.out, task.output)
+    data = Path(task.input).read_bytes()  # Blender does not tell a missing file from other failures
     args = argparse.Namespace(**settings.options_for(task))
+    is_itself = args.in_place and native.part("io.safe_files").is_same_file(task.input, output)
+    was = whole_files.content_digest(data) if is_itself else None
+    del data
     _require_fitting(args)
     open_file(task.input)
     gathered: list[tuple[bpy.types.Object, UnwrapTask]] = []
@@ -82,9 +85,8 @@ def _unwrap(task: Task, settings: Settings) -> Record:
         native.part("run.unwrap_file").require_flawless([*flaws, *findings])
     for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
         write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
-    output = Path(task.out, task.output)
     output.parent.mkdir(parents=True, exist_ok=True)
-    with native.part("io.whole_files").whole_file(output, output.suffix, keep_backup=args.in_place) as partial:
+    with whole_files.whole_file(output, output.suffix, keep_backup=args.in_place, was=was) as partial:
         save_file(str(partial))
     regions = [unwrap_task.region for _, unwrap_task in gathered]
     record = _record([unwrapped for _, unwrapped in solved], findings, failures)

@@ -29,7 +29,7 @@ from .polygons import PolygonMesh, Triangulation, triangulate
 from .repeated_corners import not_covered, without_repeated_corners
 from .safe_files import is_same_file, require_separate
 from .side_files import UsageError, read_regular
-from .whole_files import write_whole
+from .whole_files import content_digest, write_whole
 
 # By lower-case suffix: files that hold meshes, whether they can be read or not.
 MESH_SUFFIXES = frozenset(form.suffix for form in FORMATS) | {
@@ -129,7 +129,7 @@ def write_mesh_file(
     """Write a mesh file with texture coordinates: OBJ, glTF, GLB; with the extra `formats` PLY too.
 
     corner_uv: (m, 3, 2), one (u, v) per corner of the triangles of `file`; NaN where there is none.
-    in_place: the path may be that of `file` itself.
+    in_place: the path may be that of `file` itself, which must not have changed since it was read.
 
     In the file's own format everything but the texture coordinates stays as it was; otherwise vertices and polygons
     do, and what else the format cannot hold is in the findings returned. The file is written as a whole or not at all.
@@ -147,7 +147,8 @@ def write_mesh_file(
     except UsageError as error:
         raise InputError("WRONG_PARAMETER", f"{str(error)[0].upper()}{str(error)[1:]}.") from error
     data, findings = format_mesh(file, uv, form, Path(path).parent)
-    write_whole(path, data, keep_backup=in_place)
+    is_itself = in_place and file.path is not None and is_same_file(file.path, path)
+    write_whole(path, data, keep_backup=in_place, was=content_digest(file.data) if is_itself else None)
     return list(findings)
 
 

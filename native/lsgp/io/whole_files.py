@@ -23,25 +23,32 @@ IS_WINDOWS = os.name == "nt"
 REPLACE_SECONDS = 2.0
 
 
-def write_output(path: Path, data: bytes, *, keep_backup: bool = False) -> None:
+def content_digest(data: bytes) -> bytes:
+    """By which `whole_file` recognizes the content that a file had."""
+    return hashlib.blake2b(data).digest()
+
+
+def write_output(path: Path, data: bytes, *, keep_backup: bool = False, was: bytes | None = None) -> None:
     """Write a file as `write_whole` does, or for "-" to standard output.  Raises OSError."""
     if is_standard_stream(path):
         write_to_standard_output(data)
     else:
-        write_whole(path, data, keep_backup=keep_backup)
+        write_whole(path, data, keep_backup=keep_backup, was=was)
 
 
-def write_whole(path: str | os.PathLike[str], data: bytes, *, keep_backup: bool = False) -> None:
+def write_whole(
+    path: str | os.PathLike[str], data: bytes, *, keep_backup: bool = False, was: bytes | None = None
+) -> None:
     """Write a file so that it is there as a whole or not at all; a device, such as /dev/null, is written to.
 
-    keep_backup: as for `whole_file`.  Raises OSError.
+    keep_backup, was: as for `whole_file`.  Raises OSError.
     """
     with _named_in_errors(path):
         target = _writable(path)
         if target.exists() and not target.is_file():
             target.write_bytes(data)
             return
-        with whole_file(target, keep_backup=keep_backup) as partial:
+        with whole_file(target, keep_backup=keep_backup, was=was) as partial:
             _write_new(partial, data)
 
 
@@ -83,12 +90,15 @@ def _named_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> Iterator[Path]:
+def whole_file(
+    target: Path, suffix: str = "", *, keep_backup: bool = False, was: bytes | None = None
+) -> Iterator[Path]:
     """The path of a temporary file, which replaces the target on success and is removed otherwise.
 
     suffix: of that path, for writers that tell the format by it.
-    keep_backup: what was there stays as well, as `backup_of` it, until the new file is on the disk and in its
-    place.  Raises OSError; FileExistsError where there is such a backup already.
+    keep_backup: what was there stays as well, as `backup_of` it, until the new file is on the disk and in its place.
+    was: the `content_digest` of what the target had when it was read; one that has changed since is not replaced.
+    Raises OSError; FileExistsError where there is such a backup already.
     """
     partial = target.with_name(PARTIAL.replace("*", f"{_tag(target)}-{secrets.token_hex(6)}") + suffix)
     backup = None
@@ -97,6 +107,8 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
         if target.exists():
             if IS_WINDOWS and not os.access(target, os.W_OK):  # it would keep the partial file from being removed too
                 raise PermissionError(errno.EACCES, "The file is read-only", os.fspath(target))
+            if was is not None and content_digest(target.read_bytes()) != was:
+                raise OSError(None, "The file has changed since it was read; run the command again", os.fspath(target))
             shutil.copymode(target, partial)
             backup = _make_backup(target, partial) if keep_backup else None
         _replace(partial, target)

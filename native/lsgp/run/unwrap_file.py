@@ -20,9 +20,9 @@ from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
-from ..io.safe_files import is_standard_stream, read_input, require_separate
+from ..io.safe_files import is_same_file, is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, load_importance, load_json, pairs_in
-from ..io.whole_files import write_output
+from ..io.whole_files import content_digest, write_output
 from ..layouts.packing import Pack, laid_out
 from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..options import Options
@@ -149,9 +149,11 @@ def unwrap_file(
     run.missing = missing_faces(file, result.solved)
     with run.stage("write_file"):
         data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
+        is_itself = args.in_place and is_same_file(args.input, args.output)  # a batch may write elsewhere
+        was = content_digest(file.data) if is_itself else None
         if makes_folder and target is not None:
             target.parent.mkdir(parents=True, exist_ok=True)
-        write_output(args.output, data, keep_backup=args.in_place)
+        write_output(args.output, data, keep_backup=args.in_place, was=was)
     return replace(result, warnings=file.told([*findings, *result.warnings]))
 
 

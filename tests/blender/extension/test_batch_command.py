@@ -154,6 +154,29 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
         assert covered_twice(maps) == 0
 
 
+def test_a_file_that_is_saved_while_it_is_unwrapped_in_place_is_not_replaced(tmp_path, monkeypatch):
+    add_cube("Cube", cuts=1)
+    path = tmp_path / "cube.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    clear()
+    asset, parser = addon.jobs.batch.asset, command._parser()
+    given = parser.parse_args([str(path), "--out", str(tmp_path), "--in-place", "--no-pictures"])
+    task = {"input": str(path), "out": str(tmp_path), "output": path.name}
+    tasks = addon.core.native.part("batch.tasks")
+    task, settings = tasks.Task(path.name, picture="", **task), tasks.Settings.of(given)
+    assert asset.unwrap_asset(task, settings)["status"] == "ok"
+
+    def saved(partial, save=asset.save_file):
+        save(partial)
+        path.write_bytes(b"saved by another program")
+
+    monkeypatch.setattr(asset, "save_file", saved)
+    record = asset.unwrap_asset(task, settings)
+    assert (record["status"], record["code"]) == ("failed", "FILE_ERROR") and "has changed" in record["message"]
+    assert path.read_bytes() == b"saved by another program" and [*tmp_path.iterdir()] == [path]
+    clear()
+
+
 def test_faces_without_coordinates_are_counted(tmp_path):
     """A band that is one-sided beside a cube, in one object and as one that is refused."""
     turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)

@@ -6,9 +6,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from lsgp.cli import main
+from lsgp.io import mesh_files
 from lsgp.io.whole_files import write_whole
+from lsgp.run import unwrap_file
 from systems import make_link
 
 RUN = ["unwrap", "cube.obj", "--cones", "corners.json"]
@@ -42,6 +45,34 @@ def test_the_input_by_any_path_is_refused_as_output(
     assert Path("cube.obj").read_bytes() == before
     assert main([*RUN, "-o", path, "--in-place"]) == (2 if kind == "hard link" else 0)
     assert (Path(path).read_bytes() == before) == (kind == "hard link")
+
+
+@pytest.mark.parametrize("way", ["command", "library"])
+def test_what_is_saved_during_a_run_is_not_lost(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], way: str
+) -> None:
+    """By another program, to the file that is to be replaced; it may even be as long as before."""
+    monkeypatch.chdir(cube_files)
+    path = Path("cube.obj")
+    for saved in (path.read_bytes() + b"# more\n", path.read_bytes().replace(b"v 0", b"v 1", 1)):
+        before = path.read_bytes()
+        if way == "command":
+
+            def formatted(*given, saved=saved):
+                path.write_bytes(saved)
+                return mesh_files.format_mesh(*given)
+
+            monkeypatch.setattr(unwrap_file, "format_mesh", formatted)
+            assert main([*RUN, "--in-place"]) == 2
+            assert "cube.obj'" in (said := capsys.readouterr().err) and "changed since it was read" in said
+        else:
+            file = mesh_files.read_mesh_file(path)
+            path.write_bytes(saved)
+            with pytest.raises(OSError, match="changed since it was read"):
+                mesh_files.write_mesh_file(path, file, np.zeros((len(file.triangulation.triangles), 3, 2)), True)
+        assert path.read_bytes() == saved != before
+        assert sorted(entry.name for entry in Path().iterdir() if "lsgp" in entry.name) == []
+        path.write_bytes(before)
 
 
 def test_hard_links_are_not_parted(
