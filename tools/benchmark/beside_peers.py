@@ -35,7 +35,7 @@ MOST = 30_000  # triangles
 DUCK = Path(__file__).parents[2] / "examples" / "model.obj"
 METHODS = ("Paint", "Bake", "uvunwrap", "xatlas", "Smart UV Project")
 TITLES = ("CPU seconds", "islands", "cuts", "covered", "L2 stretch", "overlap, %")
-FORMATS = (".2f", ".0f", ".1f", ".2f", ".3f", ".2f")
+FORMATS = (".2f", ".4g", ".1f", ".2f", ".3f", ".2f")
 
 
 class Timed(NamedTuple):
