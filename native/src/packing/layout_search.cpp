@@ -190,7 +190,8 @@ void LayoutSearch::tighten(double with_margins_for) {
   if (!options_.fill) return;
   if (grows()) {
     constexpr int most = 4;
-    constexpr double enough = 1.004, above = 1.003, room = 1.03;
+    constexpr double above = 1.003, room = 1.03;
+    const double enough = options_.effort == PackingEffort::quick ? 1.01 : 1.004;
     double side = with_margins_for, needed = now_.side;
     for (int i = 0; i < most && (needed > side || side > enough * needed); ++i) {
       side = std::min(above * std::max(balanced_side(needed, side), 0.5 * now_.side), now_.side);

@@ -38,6 +38,7 @@ class SideChain {
     Array<Index> next(begin.begin(), begin.end() - 1);
     // As many sides end at each vertex as begin there.
     for (std::size_t v = 0; v < places_.size(); ++v) {
+      checkpoint(operations_a_corner);
       while (next[v] < begin[v + 1]) {
         Array<Complex> polygon;
         auto at = static_cast<Index>(v);
@@ -64,6 +65,7 @@ class SideChain {
               [&](const Side& a, const Side& b) { return along(a) != along(b) ? along(a) < along(b) : a < b; });
     Array<Side> left;
     for (std::size_t begin = 0, end; begin < sides_.size(); begin = end) {
+      checkpoint(operations_a_corner);
       Index upward = 0;
       for (end = begin; end < sides_.size() && along(sides_[end]) == along(sides_[begin]); ++end)
         upward += sides_[end].first < sides_[end].second ? 1 : -1;
@@ -116,10 +118,10 @@ void keep_far_points(const Array<Complex>& polygon, double tolerance, Array<char
 }  // namespace
 
 Outline Outline::around_triangles(const Array<Complex>& corners) {
-  checkpoint(operations_a_corner * static_cast<double>(corners.size()));
   SideChain chain(corners);
   Outline out;
   for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
+    checkpoint(3 * operations_a_corner);
     const Complex a = corners[t], b = corners[t + 1], c = corners[t + 2];
     if (a == b || b == c || c == a) {
       // Its sides would cancel.
@@ -132,7 +134,6 @@ Outline Outline::around_triangles(const Array<Complex>& corners) {
     chain.add(c, is_mirrored ? b : a);
   }
   chain.trace([&](const Array<Complex>& polygon) { out.add_polygon(polygon); });
-  checkpoint(operations_a_corner * static_cast<double>(corners.size()));
   return out;
 }
 
