@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/checkpoint.hpp"
 #include "base/thread_team.hpp"
 #include "lsgp/errors.hpp"
 
@@ -18,6 +19,7 @@ constexpr double ridge = 1e-9;         // of the diagonal
 constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
 
 constexpr std::ptrdiff_t shapes_at_once = 32768;  // whose derivatives are kept until they are added up
+constexpr double operations_a_derivative = 10;
 
 }  // namespace
 
@@ -282,6 +284,7 @@ std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const Distorti
       for_each_at_once(some_count,
                        [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives_.data() + offset_[i]); });
       for (std::ptrdiff_t i = 0; i < some_count; ++i) {
+        checkpoint(operations_a_derivative * static_cast<double>(derivative_size(some[i])));
         add_derivatives(some[i], derivatives_.data() + offset_[i], gradient, add);
       }
     }

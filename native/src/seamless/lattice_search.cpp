@@ -9,6 +9,7 @@
 
 #include "base/checkpoint.hpp"
 #include "plane/predicates.hpp"
+#include "solvers/dense_products.hpp"
 
 namespace lsgp {
 
@@ -20,13 +21,16 @@ constexpr double lovasz = 0.85;  // an exchange has to shorten a vector to this 
 constexpr int most_exchanges = 200;
 // Limit of the steps in improving a choice, by its size; never reached in practice.
 constexpr int most_steps = 100;
-constexpr double ridge = 1e-12;  // of the diagonal: translations of the layout may cost nothing
+constexpr double operations_a_part = 10;  // of a triangle's place
+constexpr double ridge = 1e-12;           // of the diagonal: translations of the layout may cost nothing
 // Weights of missing areas, of the form's median diagonal.
 constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 
 // The upper triangular R with R^H R = form.
 Eigen::MatrixXcd upper_factor(Eigen::MatrixXcd form) {
+  const double size = static_cast<double>(form.rows());
   form.diagonal().array() += ridge * (1 + form.diagonal().real().maxCoeff());
+  checkpoint(size * size * size);
   return form.llt().matrixU();
 }
 
@@ -84,9 +88,11 @@ LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, const Array<MovingTriangle>&
     }
   }
   reduced_ = reduce_basis(form_, lattice_);
+  const double size = static_cast<double>(form_.rows());
   inverse_of_reduced_.compute(reduced_);
-  const Eigen::MatrixXcd pulls = form_ * reduced_;
-  triangular_ = upper_factor(reduced_.adjoint() * pulls);
+  checkpoint(size * size * size);
+  const Eigen::MatrixXcd pulls = multiplied(form_, reduced_);
+  triangular_ = upper_factor(multiplied(reduced_.adjoint(), pulls));
   for (Eigen::Index k = 0; k < form_.rows(); ++k) {
     add_move(Eigen::VectorXcd::Unit(form_.rows(), k), form_.col(k));
     if (reduced_.col(k).cwiseAbs().sum() != 1) add_move(reduced_.col(k), pulls.col(k));
@@ -113,6 +119,7 @@ LatticeSearch::Choice LatticeSearch::nearest(const Eigen::VectorXcd& wanted) con
   Choice out;
   out.x = Eigen::VectorXcd::Zero(wanted.size());
   for (Eigen::Index k = wanted.size(); k-- > 0;) {
+    checkpoint(8.0 * static_cast<double>(wanted.size()));
     const Complex multiple = lattice_.nearest(rest[k] / triangular_(k, k));
     rest -= multiple * triangular_.col(k);
     out.x += multiple * reduced_.col(k);
@@ -126,6 +133,7 @@ Array<std::array<Complex, 3>> LatticeSearch::corners_at(const Eigen::VectorXcd& 
   Array<std::array<Complex, 3>> out(moves_of_triangle_.size(), std::array<Complex, 3>{});
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     if (x[k] == 0.0) continue;
+    checkpoint(operations_a_part * static_cast<double>(parts_[k].size()));
     for (const Part& part : parts_[k]) out[part.triangle][part.corner] += part.slope * x[k];
   }
   return out;

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/checkpoint.hpp"
 #include "base/conditions.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
@@ -17,6 +18,7 @@
 #include "prescription/parallel_transport.hpp"
 #include "prescription/quantize_curvature.hpp"
 #include "repair/newton.hpp"
+#include "solvers/dense_products.hpp"
 #include "systems/stiffness.hpp"
 #include "transitions/cone_triangulation.hpp"
 #include "unfold/jacobians.hpp"
@@ -164,7 +166,9 @@ void LayoutQuantizer::prepare_search() {
     lattice_energy_ = sparse_lattice_energy({{mesh_, stiffened}, cut_graph_, cut_mesh_}, reduction_);
   }
   if (integers_.size() > 0) inverse_of_basis_.compute(reduction_.basis);
-  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * lattice_energy_->schur() * reduction_.basis;
+  checkpoint(integers * integers * integers);
+  const Eigen::MatrixXcd restricted =
+      multiplied(multiplied(reduction_.basis.adjoint(), lattice_energy_->schur()), reduction_.basis);
   // Relaxed cones may be anywhere, so collapsing triangles cannot be detected.
   const bool sees_triangles = demands_.relaxed.empty();
   search_.emplace((restricted + restricted.adjoint()) / 2,
@@ -332,12 +336,15 @@ LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
       if (found != reduction_.cones.end()) slope[found - reduction_.cones.begin()] = corner.turn;
       at_start[c] = corner.turn * start_[corner.cone];
       for (const auto& [cut, coefficient] : corner.translations) {
+        checkpoint(4.0 * static_cast<double>(count));
         slope += coefficient * reduction_.translation.row(cut);
         at_start[c] += coefficient * translation_at_start(cut);
       }
       triangle.slope[c] = Eigen::RowVectorXcd::Zero(basis.cols());
       for (Eigen::Index k = 0; k < count; ++k) {
-        if (slope[k] != 0.0) triangle.slope[c] += slope[k] * basis.row(k);
+        if (slope[k] == 0.0) continue;
+        checkpoint(4.0 * static_cast<double>(count));
+        triangle.slope[c] += slope[k] * basis.row(k);
       }
     }
     out.triangles.push_back(std::move(triangle));

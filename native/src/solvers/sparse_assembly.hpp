@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/array.hpp"
+#include "base/checkpoint.hpp"
 
 namespace lsgp {
 
@@ -28,6 +29,7 @@ class LowerAssembly {
   Eigen::SparseMatrix<Scalar> build(Array<int>* slot = nullptr) const {
     const Array<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
     const Array<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
+    checkpoint(operations_an_entry * static_cast<double>(entries_.size()));
     Eigen::SparseMatrix<Scalar> matrix(size_, size_);
     matrix.resizeNonZeros(static_cast<Eigen::Index>(entries_.size()));
     int* outer = matrix.outerIndexPtr();
@@ -50,6 +52,8 @@ class LowerAssembly {
   }
 
  private:
+  static constexpr double operations_an_entry = 10;  // of a pass over them
+
   struct Entry {
     int row, column;
     Scalar value;
@@ -58,6 +62,7 @@ class LowerAssembly {
   template <typename Key>
   Array<int> sorted(const Array<int>& order, Key key) const {
     const int count = static_cast<int>(entries_.size());
+    checkpoint(operations_an_entry * count);
     Array<int> cursor(size_ + 1, 0), out(count);
     for (const Entry& entry : entries_) ++cursor[key(entry) + 1];
     for (int i = 0; i < size_; ++i) cursor[i + 1] += cursor[i];

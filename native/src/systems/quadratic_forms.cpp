@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/checkpoint.hpp"
 #include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
 
 namespace {
+
+constexpr double operations_a_product = 20;  // of two terms
 
 // Calls visit(from, to, value) for one halfedge of every edge of the cut mesh, value the entry (from, to) of the form,
 // and visit(copy, copy, value) for the diagonal.
@@ -100,7 +103,9 @@ Eigen::SparseMatrix<double> assemble_cotangents(const MetricMesh& surface, Index
 Eigen::SparseMatrix<Complex> assemble_form(Form form, const MetricMesh& surface, const CutMesh& cut_mesh,
                                            const Reduction& reduction) {
   LowerAssembly<Complex> assembly(reduction.unknown_count, 4 * static_cast<std::size_t>(cut_mesh.copy_count()));
+  const auto terms = [&](Index copy) { return static_cast<double>(reduction.begin[copy + 1] - reduction.begin[copy]); };
   for_each_entry(form, surface, cut_mesh, [&](Index from, Index to, Complex value) {
+    checkpoint(operations_a_product * terms(from) * terms(to));
     reduction.for_each_term(from, [&](const Term& row) {
       reduction.for_each_term(to, [&](const Term& column) {
         const Complex entry = std::conj(row.coefficient) * value * column.coefficient;

@@ -23,8 +23,9 @@ constexpr double delaunay_tie = 1e-10;
 constexpr double no_gap = 1e-6;
 // Coefficients below this have cancelled: they are sums of products of numbers of modulus 1.
 constexpr double cancelled = 1e-12;
-constexpr double operations_a_removal = 2000;  // of a vertex
-constexpr double operations_of_check = 100;    // of an edge, about
+constexpr double operations_a_translation = 10;  // of two motions
+constexpr double operations_a_removal = 2000;    // of a vertex
+constexpr double operations_of_check = 100;      // of an edge, about
 
 double relative_area(Complex a, Complex b, Complex c) {
   return doubled_area(a, b, c) / std::max({std::norm(b - a), std::norm(c - b), std::norm(a - c)});
@@ -50,6 +51,7 @@ class Motions {
     if (second == identity) return first;
     if (first == identity) return second;
     const Motion &b = all_[second], &a = all_[first];
+    checkpoint(operations_a_translation * static_cast<double>(a.translations.size() + b.translations.size()));
     Motion out{b.turn * a.turn, {}};
     out.translations.reserve(a.translations.size() + b.translations.size());
     auto i = a.translations.begin(), j = b.translations.begin();
@@ -288,6 +290,7 @@ class IntrinsicTriangulation {
     } while (h != outgoing_[v]);
     for (int degree;;) {
       const Index spoke = best_flip(v, degree);
+      checkpoint(operations_of_check * degree);
       if (degree == 3 && merge_triangles(v)) return true;
       if (degree <= 3 || spoke == none) return false;
       flip(spoke);

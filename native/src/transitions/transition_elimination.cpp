@@ -3,13 +3,18 @@
 
 #include <cmath>
 
+#include "base/checkpoint.hpp"
+
 namespace lsgp {
 
 namespace {
 
 using Expression = TransitionElimination::Expression;
 
+constexpr double operations_a_term = 50;  // in an ordered map
+
 void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
+  checkpoint(operations_a_term * static_cast<double>(terms.size()));
   for (const auto& [id, coefficient] : terms) sum[id] += factor * coefficient;
 }
 
