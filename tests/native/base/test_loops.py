@@ -459,6 +459,47 @@ REVIEWED = {
             OWN,
         ),
     ],
+    "packing/bit_rows.hpp": [("while (begin < end)", "words of a row", SHORT)],
+    "packing/footprint.cpp": [("while (length >> (level + 1))", "bits of an int", SHORT)],
+    "packing/footprint.hpp": [
+        ("for (int column = begin; column <= last; column += BitRows::word_bits)", "words of a row", SHORT),
+        ("while (taken & 1)", "bits of a word", SHORT),
+    ],
+    "packing/layout_search.cpp": [
+        (
+            "for (int i = 0; i < most && (needed > side || side > enough * needed); ++i)",
+            "a fixed number of layouts",
+            WITHIN,
+        ),
+        ("while (now_.side > near * low)", "each round halves what is between the two", WITHIN),
+        *[
+            (
+                "for (double share = 0; share < 1; share = budget.share(work_ - work_before))",
+                "the budget of work, of which each round takes some",
+                OWN,
+            )
+        ]
+        * 2,
+    ],
+    "packing/outline.cpp": [
+        ("while (next[v] < begin[v + 1])", "sides from a vertex, each once", OWN),
+        ("while (at != static_cast<Index>(v))", "sides, each once, as many end at a vertex as begin there", SHORT),
+        (
+            "for (std::size_t begin = 0, end; begin < sides_.size(); begin = end)",
+            "passes a side each time",
+            SHORT,
+        ),
+        ("while (!open.empty())", "parts of a polygon, each divided at a corner", OWN),
+    ],
+    "packing/separation.cpp": [
+        ("for (int x = left; x < right; x += BitRows::word_bits)", "words of a row", SHORT),
+        ("for (int step = first_step; step > 0;)", "halved unless the cost gets lower, over places in a raster", SHORT),
+        (
+            "for (int tried = 0, first = below(random, count); !fits(pose); ++tried)",
+            "poses of an island, each once",
+            SHORT,
+        ),
+    ],
     "division/straight_cuts.cpp": [
         ("while (mesh_.twin[g] != none && !open_[g] && !parts_differ(g))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none; h = next_on[h])", LINKED, SHORT),
