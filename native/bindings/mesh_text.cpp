@@ -31,7 +31,7 @@ std::string_view view_of(const py::bytes& data) { return static_cast<std::string
 
 // The values without a copy.
 template <typename T>
-py::array_t<T> to_array(std::vector<T> values) {
+py::array_t<T> array_of(std::vector<T> values) {
   auto owned = std::make_unique<std::vector<T>>(std::move(values));
   const auto* all = owned.get();
   const py::capsule owner(owned.release(), [](void* kept) { delete static_cast<std::vector<T>*>(kept); });
@@ -58,8 +58,8 @@ class RowSplitter {
       at = end + 1;
       if (end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n') ++at;
     }
-    return py::make_tuple(to_array(std::move(begins_)), to_array(std::move(ends_)), to_array(std::move(counts_)),
-                          to_array(std::move(lines_)));
+    return py::make_tuple(array_of(std::move(begins_)), array_of(std::move(ends_)), array_of(std::move(counts_)),
+                          array_of(std::move(lines_)));
   }
 
  private:

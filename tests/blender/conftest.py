@@ -26,15 +26,12 @@ else:
 
     @pytest.fixture(autouse=True)
     def tries(request, monkeypatch):
-        """With --few-tries tight layouts are looked for in few ways, and Blender's packer turns no islands: how much of
-        the square is filled by that no Blender changes, and all else is so after any number of tries."""
+        """With --few-tries layouts are packed with little effort: how much of the square they fill no Blender changes,
+        and all else is so after any effort."""
         if request.config.getoption("few_tries") and not request.node.get_closest_marker("all_tries"):
-            from installed import addon
             from lsgp import pack_islands
 
             monkeypatch.setitem(pack_islands.__kwdefaults__, "effort", "quick")
-            for name in ("ENOUGH", "ENOUGH_UNTURNED"):
-                monkeypatch.setattr(addon.jobs.layouts.packing, name, 0.0)
 
     @pytest.fixture(autouse=True)
     def empty_scene():

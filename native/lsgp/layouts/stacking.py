@@ -15,6 +15,7 @@ from ..base.arguments import FloatArray
 from ..base.equality import EqualByContent
 from ..base.progress import Progress, tell
 from ..base.short_repr import ShortRepr
+from ..base.unique_rows import unique_rows
 from ..base.unit_size import unit_exponent
 from ..triangles import uv_area
 
@@ -101,7 +102,7 @@ class _Shape:
     @classmethod
     def of(cls, triangles: Indices, uv: FloatArray) -> _Shape:
         corner = uv[triangles].reshape(-1, 2) + 0.0  # -0.0 is 0.0
-        vertex, of_corner = np.unique(corner, axis=0, return_inverse=True)
+        vertex, _, of_corner, _ = unique_rows(corner)
         corners = of_corner.reshape(-1, 3)
         place = vertex @ np.array([1, 1j])
         edges = place[corners] - place[corners[:, [1, 2, 0]]]

@@ -25,7 +25,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double same_angle = 1e-9;  // radians
+constexpr double same_cone_angle = 1e-9;  // radians
 
 // A surface split into components, with the vertices where cones may be placed.
 class PlacementWork {
@@ -199,7 +199,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     for (std::size_t i = 0; i < found.cones.vertices.size(); ++i) {
       own.push_back(component.source_vertex[found.cones.vertices[i]]);
       std::optional<double>& told = angle[own.back()];
-      if (told && std::abs(*told - *found.cones.angles[i]) > same_angle) shared.push_back(own.back());
+      if (told && std::abs(*told - *found.cones.angles[i]) > same_cone_angle) shared.push_back(own.back());
       told = found.cones.angles[i];
     }
     placed.insert(placed.end(), own.begin(), own.end());

@@ -65,7 +65,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
-    const Array<Motion> motions = LayoutSearch(bodies, options, monitor).best();
+    const Array<BodyMotion> motions = LayoutSearch(bodies, options, monitor).best();
     Index island_count = 0;
     for (const Index i : island) island_count = std::max(island_count, i + 1);
     Array<Index> body_of(island_count, -1);

@@ -11,11 +11,11 @@ namespace lsgp {
 
 namespace {
 
-constexpr double same_position = 1e-7;  // of both sides of an edge without a cut, in the unit square
+constexpr double same_place = 1e-7;  // of both sides of an edge without a cut, in the unit square
 constexpr double bytes_a_corner = 24;
 constexpr int most_steps = 128;  // triangles that are visited on the way from one to another
 
-bool differ(Complex a, Complex b) { return std::abs(a - b) > same_position; }
+bool differ(Complex a, Complex b) { return std::abs(a - b) > same_place; }
 
 }  // namespace
 

@@ -20,7 +20,8 @@ constexpr double most_bends = 1.45;  // of one edge to the next: less than for r
 constexpr double most_widths = 2.5;  // of a face to the next
 constexpr double least_round = 0.5;  // of the curvature
 constexpr int most_triangles = 32;   // of a face that are crossed
-constexpr double rounding = 1e-9;    // of a direction: it may not decide on which side a path through a vertex goes on
+constexpr double side_rounding =
+    1e-9;  // of a direction: it may not decide on which side a path through a vertex goes on
 
 double ratio(double a, double b) { return std::max(a, b) / std::min(a, b); }
 
@@ -49,7 +50,7 @@ std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& b
   Index h = first;
   for (int i = 0; i < most_triangles; ++i) {
     const Vector to_apex = position(prev(h)) - middle;
-    const bool apex_is_left = across.cross(to_apex).dot(normal) > -rounding * to_apex.norm();
+    const bool apex_is_left = across.cross(to_apex).dot(normal) > -side_rounding * to_apex.norm();
     h = apex_is_left ? next(h) : prev(h);
     if (mesh.twin[h] == none) return std::nullopt;
     turned += bend[h] >= is_flat ? bend[h] : 0;

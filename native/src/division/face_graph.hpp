@@ -5,7 +5,7 @@
 #include "base/array.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
-#include "solvers/cut_network.hpp"
+#include "solvers/smallest_cut.hpp"
 
 namespace lsgp {
 
@@ -19,7 +19,7 @@ struct OpenedSurface : MetricMesh {
 };
 
 struct FaceGraph {
-  using Units = CutNetwork::Units;
+  using Units = SmallestCut::Units;
 
   struct Link {
     Index faces[2];

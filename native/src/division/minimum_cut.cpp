@@ -22,7 +22,7 @@ constexpr double cell_detour = 1.5;   // by which a cut between cells may be lon
 
 constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
-using Edge = CutNetwork::Edge;
+using Edge = SmallestCut::Edge;
 
 }  // namespace
 
@@ -182,13 +182,13 @@ Units MinimumCutter::useless_length(double least_cost) const {
 
 // Those that cost less than `best`, and at most `slack` times what the cheapest does.
 Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, double slack, double best) const {
-  CutNetwork network(cells.count(), cells.edges);
+  SmallestCut network(cells.count(), cells.edges);
   network.add_to_first(first_cell);
   network.add_to_second(second_cell);
   const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
   Array<CellCut> out;
   const auto is_useless = [&](Units length) { return cost(length, enough()) >= slack * best; };
-  const auto judge = [&](const CutNetwork& solved, Units length, const Array<char>& is_held) {
+  const auto judge = [&](const SmallestCut& solved, Units length, const Array<char>& is_held) {
     CellCut cut{solved.first_side(), is_held, 0};
     double area = 0;
     for (Index cell = 0; cell < cells.count(); ++cell) area += cut.is_first[cell] ? cells.area[cell] : 0;
@@ -208,7 +208,7 @@ Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, doubl
   // Cuts further away from the sets to be separated, on one side or on both, which leave larger parts.
   const std::array<Array<Index>, 2> nearest = cells.by_distance();
   for (const std::array<bool, 2> grows : {std::array{true, false}, std::array{false, true}, std::array{true, true}}) {
-    CutNetwork grown = network;
+    SmallestCut grown = network;
     Units length = least;
     Array<char> held = is_held;
     std::array<double, 2> areas = least_areas, taken{cells.area[first_cell], cells.area[second_cell]};
@@ -300,7 +300,7 @@ MinimumCut MinimumCutter::refine(const Array<Index>& scope, const Array<char>& i
   Index count = 2;
   for (const Index face : band) cell[place_[face]] = count++;
   const Cells cells = cells_of(scope, cell, count);
-  CutNetwork network(count, cells.edges);
+  SmallestCut network(count, cells.edges);
   network.add_to_first(first_cell);
   network.add_to_second(second_cell);
   const Units length = network.find_smallest(useless_length(cost_to_beat));

@@ -28,7 +28,7 @@ constexpr double bytes_a_corner = 40;
 
 using Point = Eigen::Vector2d;
 
-double doubled_area(const Point& a, const Point& b, const Point& c) { return cross_product(b - a, c - a); }
+double doubled_flat_area(const Point& a, const Point& b, const Point& c) { return cross_product(b - a, c - a); }
 
 class Thinning {
  public:
@@ -214,7 +214,7 @@ class Thinning {
 
   // The quality of a triangle between neighbors; 0 where it must not be.
   double shape(int a, int b, int c) const {
-    if (!(doubled_area(flat_[a], flat_[b], flat_[c]) > least_flat_area * size_ * size_)) return 0;
+    if (!(doubled_flat_area(flat_[a], flat_[b], flat_[c]) > least_flat_area * size_ * size_)) return 0;
     const Eigen::Vector3d first = spokes_[b] - spokes_[a], second = spokes_[c] - spokes_[a];
     const Eigen::Vector3d across = first.cross(second);
     const double doubled = across.norm();
@@ -227,8 +227,8 @@ class Thinning {
     return std::any_of(polygon_.begin(), polygon_.end(), [&](int other) {
       if (other == a || other == b || other == c) return false;
       const Point& p = flat_[other];
-      return doubled_area(flat_[a], flat_[b], p) >= 0 && doubled_area(flat_[b], flat_[c], p) >= 0 &&
-             doubled_area(flat_[c], flat_[a], p) >= 0;
+      return doubled_flat_area(flat_[a], flat_[b], p) >= 0 && doubled_flat_area(flat_[b], flat_[c], p) >= 0 &&
+             doubled_flat_area(flat_[c], flat_[a], p) >= 0;
     });
   }
 
@@ -279,9 +279,9 @@ class Thinning {
       double inside = -std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < filling_.size(); ++k) {
         const Point &a = flat_[filling_[k][0]], &b = flat_[filling_[k][1]], &c = flat_[filling_[k][2]];
-        const double whole = doubled_area(a, b, c);
-        const double share[3] = {doubled_area(b, c, at_[i]) / whole, doubled_area(c, a, at_[i]) / whole,
-                                 doubled_area(a, b, at_[i]) / whole};
+        const double whole = doubled_flat_area(a, b, c);
+        const double share[3] = {doubled_flat_area(b, c, at_[i]) / whole, doubled_flat_area(c, a, at_[i]) / whole,
+                                 doubled_flat_area(a, b, at_[i]) / whole};
         const double least = std::min({share[0], share[1], share[2]});
         if (!(least > inside)) continue;
         inside = least;

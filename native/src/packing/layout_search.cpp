@@ -328,7 +328,7 @@ void LayoutSearch::separate(const Budget& budget) {
   }
 }
 
-Array<Motion> LayoutSearch::best() {
+Array<BodyMotion> LayoutSearch::best() {
   const auto count = static_cast<double>(free_.size());
   expected_side_ = estimated_side();
   double farthest = 0;
@@ -408,10 +408,10 @@ bool LayoutSearch::is_hardly_filled() const {
   return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
 }
 
-Array<Motion> LayoutSearch::motions() {
+Array<BodyMotion> LayoutSearch::motions() {
   // The last attempt may have been at another side.
   if (sizes_depend_on_side() && now_.rasterized_for != now_.side) rasterize(now_.side);
-  Array<Motion> out(bodies_.size());
+  Array<BodyMotion> out(bodies_.size());
   Array<Outline> moved;
   Box all{1e300, -1e300, 1e300, -1e300};
   for (const Index b : free_) {

@@ -16,7 +16,7 @@
 namespace lsgp {
 
 // How a body is moved: around its origin it is multiplied, and then shifted, in texture coordinates.
-struct Motion {
+struct BodyMotion {
   int tile = -1;
   Complex factor, shift;
 };
@@ -47,7 +47,7 @@ class LayoutSearch {
   LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, ProgressMonitor& monitor);
 
   // How to move each body; those that keep their place are left out. Throws WRONG_PARAMETER where no layout is found.
-  Array<Motion> best();
+  Array<BodyMotion> best();
 
  private:
   // In which order bodies are placed, and how.
@@ -93,7 +93,7 @@ class LayoutSearch {
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
   int below(int most) { return static_cast<int>(random_() % static_cast<std::uint32_t>(most)); }
-  Array<Motion> motions();
+  Array<BodyMotion> motions();
   [[noreturn]] void refuse(const Order& order, double side);
 
   const Array<Body>& bodies_;

@@ -24,10 +24,10 @@ constexpr double weights[] = {1.5, 0.3, 0.7};
 // Added to the score for any overlap, since even a small one requires another island; at this small share of the
 // layout, half of that is added.
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;
-constexpr double largest_cost = 1.25;     // of the given cuts
-constexpr double least_gain = 1e-4;       // of the score
-constexpr double most_work = 1e7;         // sides of boundary polygons visited
-constexpr double operations_a_side = 30;  // of a boundary polygon on the raster
+constexpr double largest_cost = 1.25;      // of the given cuts
+constexpr double least_score_gain = 1e-4;  // of the score
+constexpr double most_work = 1e7;          // sides of boundary polygons visited
+constexpr double operations_a_side = 30;   // of a boundary polygon on the raster
 
 struct Circle {
   Complex center;
@@ -210,7 +210,7 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
   const CoverageRaster rest = raster_of(resting);
   const double without = now_.overlap - shared(rest, moving, {});
   Exchange best;
-  double least = score(now_.overlap, now_.cost, weight) - least_gain;
+  double least = score(now_.overlap, now_.cost, weight) - least_score_gain;
   Array<char> in_tree = now_.in_tree;
   in_tree[opened] = 0;
   for (Index p = 0; p < ssize(graph_.paths); ++p) {

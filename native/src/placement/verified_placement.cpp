@@ -14,7 +14,7 @@ constexpr Index small = 2000;         // triangles: all repairs of such a surfac
 constexpr int most_hard_repairs = 2;  // of a larger one
 constexpr Index very_large = 20000;   // triangles: too many for repairs without hope of low stretch
 constexpr int fewer_defects = 2;      // factor, compared with a map whose repair left high stretch
-constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
+constexpr double unreachable_l2 = 2;  // as predicted: lower targets are out of reach
 constexpr int tangled_share = 4;      // one triangle of so many with a defect: only the final choice is repaired
 constexpr double as_predicted = 1.03;
 constexpr double same_angles = 1e-9;  // of all of them
@@ -33,7 +33,7 @@ constexpr double worth_moving = 0.99;
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
-constexpr double low_l2 = 1.01;        // of a map that justifies a cone at every rounded corner
+constexpr double justified_l2 = 1.01;  // of a map that justifies a cone at every rounded corner
 constexpr double usual_l2 = 1.05;      // of a map that does not justify more cones than the stages have
 constexpr double far_from_target = 2;  // of the stretch above 1: other stages are tried where angles are rounded
 constexpr double much_fewer = 0.8;     // of those at cheap sites: so few at any sites are preferred
@@ -59,15 +59,15 @@ VerifiedChoice VerifiedPlacement::place() {
     VerifiedChoice anywhere = place_as_asked();
     if (is_better(anywhere.map, out.map)) out = std::move(anywhere);
   }
-  if (misses(out) || out.cones.predicted_l2 > hopeless_l2) choose_other_angles(out);
-  if (out.map.l2 > hopeless_l2 && is_worth_trying(out.cones)) {
+  if (misses(out) || out.cones.predicted_l2 > unreachable_l2) choose_other_angles(out);
+  if (out.map.l2 > unreachable_l2 && is_worth_trying(out.cones)) {
     const auto present = static_cast<int>(out.cones.vertices.size());
     VerifiedChoice weaker = verified(chooser_.choose_within(usual_reach, present));
     choose_other_angles(weaker);
     if (is_better(weaker.map, out.map)) out = std::move(weaker);
   }
   const bool is_automatic = !chooser_.options().count;
-  if (is_automatic && is_small() && out.cones.predicted_l2 <= hopeless_l2) move_cones(MovedAngles::bounded, out);
+  if (is_automatic && is_small() && out.cones.predicted_l2 <= unreachable_l2) move_cones(MovedAngles::bounded, out);
   // Unwrapping would repair it anyway.
   const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
   if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);
@@ -111,7 +111,7 @@ bool VerifiedPlacement::is_worth_repairing(const VerifiedChoice& choice) const {
 void VerifiedPlacement::repair(VerifiedChoice& choice) {
   ++hard_repairs_;
   TriedMap repaired = trial_.make(chooser_.with_angles(choice.cones), MapTrial::Repairs::all);
-  if (repaired.is_valid() && repaired.l2 > hopeless_l2) hopeless_defects_ = choice.map.defects();
+  if (repaired.is_valid() && repaired.l2 > unreachable_l2) hopeless_defects_ = choice.map.defects();
   if (!repaired.is_valid() || repaired.curvature.isApprox(choice.cones.curvature, same_angles)) {
     choice.map = std::move(repaired);
   } else {
@@ -143,7 +143,7 @@ std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corner
 // Rounded corners give nearly isometric maps, with few cones more than the target takes.
 std::optional<VerifiedChoice> VerifiedPlacement::placed_at_corners() {
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return natural;
-  return verified_within(std::min(low_l2, chooser_.options().target), rounded_corner_cones(chooser_));
+  return verified_within(std::min(justified_l2, chooser_.options().target), rounded_corner_cones(chooser_));
 }
 
 VerifiedChoice VerifiedPlacement::place_to_target() {
@@ -295,7 +295,7 @@ bool VerifiedPlacement::is_tangled(const TriedMap& map) const {
 
 bool VerifiedPlacement::is_hopeless(const VerifiedChoice& choice) const {
   const TriedMap& map = choice.map;
-  return !map.is_valid() && !map.is_repaired && is_tangled(map) && choice.cones.predicted_l2 > hopeless_l2;
+  return !map.is_valid() && !map.is_repaired && is_tangled(map) && choice.cones.predicted_l2 > unreachable_l2;
 }
 
 bool VerifiedPlacement::has_many() const {
@@ -303,7 +303,7 @@ bool VerifiedPlacement::has_many() const {
 }
 
 bool VerifiedPlacement::is_short(const VerifiedChoice& choice) const {
-  return choice.map.l2 > chooser_.options().target && choice.cones.predicted_l2 <= hopeless_l2;
+  return choice.map.l2 > chooser_.options().target && choice.cones.predicted_l2 <= unreachable_l2;
 }
 
 VerifiedChoice VerifiedPlacement::place_count(int count) {
@@ -395,7 +395,7 @@ void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
 // Repairs of large surfaces with high stretch take long.
 bool VerifiedPlacement::is_worth_trying(const ConeChoice& cones) const {
   if (!cones.is_possible()) return false;
-  return is_small() || cones.predicted_l2 <= hopeless_l2;
+  return is_small() || cones.predicted_l2 <= unreachable_l2;
 }
 
 // False with a lattice, a mirror plane, or given angles.

@@ -12,8 +12,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr std::size_t cheap_share = 4;  // one edge in so many is cheap
-constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr std::size_t edges_a_cheap_one = 4;  // one edge in so many is cheap
+constexpr double unreached = std::numeric_limits<double>::infinity();
 
 double factor_of(const HalfedgeMesh& mesh, Index h) { return mesh.seam[h] ? 0 : mesh.cut_factor[h]; }
 
@@ -51,7 +51,7 @@ Eigen::VectorXd vertex_prices(const MetricMesh& surface) {
   Array<double> factors;
   for (const Index h : edges) factors.push_back(factor_of(mesh, h));
   std::sort(factors.begin(), factors.end());
-  const double cheap = factors[(factors.size() - 1) / cheap_share], dearest = factors.back();
+  const double cheap = factors[(factors.size() - 1) / edges_a_cheap_one], dearest = factors.back();
   if (!(cheap < dearest)) return out;
   const PathStarts starts = largest_network(mesh, edges, cheap);
   PerVertex<Reached> reached(mesh.vertex_count());
@@ -59,7 +59,7 @@ Eigen::VectorXd vertex_prices(const MetricMesh& surface) {
   grow_paths(CutEdges(surface), {starts}, [](Index) { return true; }, reached);
   double farthest = 0;
   for (const Reached& at : reached) {
-    if (at.distance < unlimited) farthest = std::max(farthest, at.distance);
+    if (at.distance < unreached) farthest = std::max(farthest, at.distance);
   }
   if (farthest == 0) return out;
   // Costs that hardly differ have hardly any weight.

@@ -15,9 +15,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr double corridor = 3;  // mean edge lengths to either side of a path's image
-constexpr double straying = 5;  // the cost of the squared distance from it, in these lengths
-constexpr double operations_a_search = 500;
+constexpr double image_corridor = 3;  // mean edge lengths to either side of a path's image
+constexpr double image_straying = 5;  // the cost of the squared distance from it, in these lengths
+constexpr double operations_an_image_search = 500;
 
 // The cheapest path near the mirror image of another.
 class ImagePath {
@@ -39,7 +39,7 @@ class ImagePath {
   Reached& at(Index v) {
     const auto [found, is_new] = reached_.try_emplace(v);
     if (is_new) {
-      checkpoint(operations_a_search);
+      checkpoint(operations_an_image_search);
       found->second.apart = points_.nearest(mesh_.positions.row(v)).distance / edge_;
     }
     return found->second;
@@ -65,9 +65,9 @@ Array<Index> ImagePath::find(Index from, Index to) {
     mesh_.for_each_outgoing(v, [&](Index h) {
       if (!may_cut(mesh_, h)) return;
       Reached& there = at(mesh_.target(h));
-      if (there.apart > corridor && mesh_.target(h) != to) return;
+      if (there.apart > image_corridor && mesh_.target(h) != to) return;
       const double squares = here.apart * here.apart + there.apart * there.apart;
-      const double through = here.distance + geometry_.length[h] * (1 + straying * squares);
+      const double through = here.distance + geometry_.length[h] * (1 + image_straying * squares);
       if (!(through < there.distance)) return;
       there.distance = through;
       there.by = h;
@@ -114,7 +114,7 @@ Array<Index> MirroredIslands::one_sided_halves(const PerHalfedge<char>& open) co
   const auto is_near = [&](const Eigen::RowVector3d& at) { return tree.nearest(at).distance <= edge_; };
   Array<Index> out;
   for (Index i = 0; i < points.rows(); ++i) {
-    checkpoint(operations_a_search);
+    checkpoint(operations_an_image_search);
     const Index h = edges[i / 2];
     if (is_in_plane(h)) continue;
     const Eigen::RowVector3d image = reflected(mirroring_.plane, points.row(i));

@@ -16,15 +16,15 @@ namespace {
 constexpr double strictly_convex = 1e-12;
 // A triangle at a vertex that is about to be removed may have no area: if the vertex lies on the line between two
 // neighbors, the removal dissolves it.
-constexpr double no_area = 1e-9;
+constexpr double flat_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
-constexpr double delaunay_tie = 1e-10;
+constexpr double sine_of_tie = 1e-10;
 // Relative to its triangle's size, the gap between the first and the last triangle around a vertex without curvature.
 constexpr double no_gap = 1e-6;
 // Coefficients below this have cancelled: they are sums of products of numbers of modulus 1.
 constexpr double cancelled = 1e-12;
 constexpr double operations_a_translation = 10;  // of two motions
-constexpr double operations_a_removal = 2000;    // of a vertex
+constexpr double operations_of_removal = 2000;   // of a vertex
 constexpr double operations_of_check = 100;      // of an edge, about
 
 double relative_area(Complex a, Complex b, Complex c) {
@@ -130,7 +130,7 @@ class IntrinsicTriangulation {
       for (const Index v : left) {
         if (touched_in_[v] == pass || !remove(v, pass)) stuck.push_back(v);
         restore_delaunay();
-        checkpoint(operations_a_removal);
+        checkpoint(operations_of_removal);
       }
       if (stuck.size() == left.size()) return false;
       left.swap(stuck);
@@ -236,7 +236,7 @@ class IntrinsicTriangulation {
     const Complex left = std::conj(at(h) - at(prev(h))) * (at(next(h)) - at(prev(h)));
     const Complex right = std::conj(at(t) - at(prev(t))) * (at(next(t)) - at(prev(t)));
     const Complex both = left * right;  // its argument is the sum of the angles opposite the edge
-    return std::imag(both) >= -delaunay_tie * (std::abs(std::real(both)) + std::abs(std::imag(both)));
+    return std::imag(both) >= -sine_of_tie * (std::abs(std::real(both)) + std::abs(std::imag(both)));
   }
 
   void restore_delaunay() {
@@ -273,7 +273,7 @@ class IntrinsicTriangulation {
         best = spoke;
         best_area = area;
         best_is_loop = is_loop;
-      } else if (!is_loop && inside >= -no_area && outside > best_tie_area) {
+      } else if (!is_loop && inside >= -flat_area && outside > best_tie_area) {
         best_tie = spoke;
         best_tie_area = outside;
       }

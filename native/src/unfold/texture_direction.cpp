@@ -13,9 +13,9 @@ namespace lsgp {
 namespace {
 
 const Complex upwards(0, 1);
-constexpr double rounding = 1e-9;
-constexpr double least_inside = 1e-9;  // relative component of a direction in its triangle; less is rounding
-constexpr double least_weight = std::numeric_limits<double>::min();
+constexpr double same_uprightness = 1e-9;  // of two turns, relative to the weights
+constexpr double least_inside = 1e-9;      // relative component of a direction in its triangle; less is rounding
+constexpr double smallest_weight = std::numeric_limits<double>::min();
 
 Eigen::Vector3d edge_in_space(const HalfedgeMesh& mesh, Index h) {
   return mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h));
@@ -96,7 +96,7 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
     out.along_first[f] = unit.dot(inside.cross(last)) / doubled_area;
     out.along_last[f] = unit.dot(first.cross(inside)) / doubled_area;
     // A direction of negligible weight still has an error.
-    out.weight[f] = std::max(doubled_area / 2 * inside.norm() * (largest / longest), least_weight);
+    out.weight[f] = std::max(doubled_area / 2 * inside.norm() * (largest / longest), smallest_weight);
   }
   return out;
 }
@@ -177,7 +177,7 @@ int UpwardTurn::turns_on_lattice() const {
     const double angle = 2 * M_PI * turns / rotation_order_;
     const double upright =
         std::real(twice_ * std::polar(1.0, 2 * angle) + share_of_once * once_ * std::polar(1.0, angle));
-    if (!(upright > most + rounding * weight_)) continue;
+    if (!(upright > most + same_uprightness * weight_)) continue;
     most = upright;
     best = turns;
   }

@@ -366,7 +366,7 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "solvers/cut_network.cpp": [
+    "solvers/smallest_cut.cpp": [
         ("while (highest_active_ > 0 && arrived_ < enough)", "distances only grow, up to the number of nodes", OWN),
         ("while (excess_[node] > 0 && distance_[node] < count_)", "each round but the last lifts the node", SHORT),
         ("while (nodes->first(level) >= 0)", "nodes of a list, each once", SHORT),

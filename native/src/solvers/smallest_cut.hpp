@@ -11,7 +11,7 @@ namespace lsgp {
 
 // Edges with capacities between nodes 0, 1, ..., and two sets of nodes, which may grow. The push-relabel algorithm
 // (Goldberg and Tarjan 1988) sends what it can from the second set to the first.
-class CutNetwork {
+class SmallestCut {
  public:
   using Units = std::int64_t;
 
@@ -20,7 +20,7 @@ class CutNetwork {
     Units capacity;
   };
 
-  CutNetwork(int node_count, const Array<Edge>& edges);
+  SmallestCut(int node_count, const Array<Edge>& edges);
 
   // Puts a node that is in neither set into one of them.
   void add_to_first(int node);

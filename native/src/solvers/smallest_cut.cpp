@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solvers/cut_network.hpp"
+#include "solvers/smallest_cut.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -16,7 +16,7 @@ constexpr double most_visits = 6, visits_a_lift = 12;
 
 }  // namespace
 
-void CutNetwork::Levels::insert(int node, int level) {
+void SmallestCut::Levels::insert(int node, int level) {
   const int next = first_[level];
   next_[node] = next;
   previous_[node] = -1;
@@ -24,13 +24,13 @@ void CutNetwork::Levels::insert(int node, int level) {
   first_[level] = node;
 }
 
-void CutNetwork::Levels::remove(int node, int level) {
+void SmallestCut::Levels::remove(int node, int level) {
   const int next = next_[node], previous = previous_[node];
   (previous >= 0 ? next_[previous] : first_[level]) = next;
   if (next >= 0) previous_[next] = previous;
 }
 
-CutNetwork::CutNetwork(int node_count, const Array<Edge>& edges)
+SmallestCut::SmallestCut(int node_count, const Array<Edge>& edges)
     : count_(node_count),
       begin_(node_count + 1, 0),
       arcs_(2 * edges.size()),
@@ -51,13 +51,13 @@ CutNetwork::CutNetwork(int node_count, const Array<Edge>& edges)
   }
 }
 
-void CutNetwork::add_to_first(int node) {
+void SmallestCut::add_to_first(int node) {
   set_[node] = Set::first;
   arrived_ += excess_[node];
   excess_[node] = 0;
 }
 
-void CutNetwork::add_to_second(int node) {
+void SmallestCut::add_to_second(int node) {
   set_[node] = Set::second;
   excess_[node] = 0;
   for (int a = begin_[node]; a < begin_[node + 1]; ++a) {
@@ -69,7 +69,7 @@ void CutNetwork::add_to_second(int node) {
   }
 }
 
-CutNetwork::Units CutNetwork::find_smallest(Units enough) {
+SmallestCut::Units SmallestCut::find_smallest(Units enough) {
   measure_distances();
   while (highest_active_ > 0 && arrived_ < enough) {
     const int node = active_.first(highest_active_);
@@ -83,7 +83,7 @@ CutNetwork::Units CutNetwork::find_smallest(Units enough) {
   return arrived_;
 }
 
-Array<char> CutNetwork::first_side() const {
+Array<char> SmallestCut::first_side() const {
   Array<char> reached(count_, 0);
   Array<int> queue;
   for (int node = 0; node < count_; ++node) {
@@ -102,7 +102,7 @@ Array<char> CutNetwork::first_side() const {
   return reached;
 }
 
-void CutNetwork::measure_distances() {
+void SmallestCut::measure_distances() {
   distance_.assign(count_, count_);
   current_.assign(begin_.begin(), begin_.end() - 1);
   active_ = resting_ = Levels(count_);
@@ -132,7 +132,7 @@ void CutNetwork::measure_distances() {
 }
 
 // Sends the excess of a node on, and lifts the node where that is needed.
-void CutNetwork::discharge(int node) {
+void SmallestCut::discharge(int node) {
   active_.remove(node, distance_[node]);
   while (excess_[node] > 0 && distance_[node] < count_) {
     int& a = current_[node];
@@ -147,7 +147,7 @@ void CutNetwork::discharge(int node) {
   if (excess_[node] == 0) resting_.insert(node, distance_[node]);
 }
 
-void CutNetwork::push(int node, Arc& arc) {
+void SmallestCut::push(int node, Arc& arc) {
   const Units units = std::min(excess_[node], arc.residual);
   arc.residual -= units;
   arcs_[arc.reverse].residual += units;
@@ -164,7 +164,7 @@ void CutNetwork::push(int node, Arc& arc) {
 }
 
 // Of a node in neither list, from which no arc leads nearer.
-void CutNetwork::lift(int node) {
+void SmallestCut::lift(int node) {
   const int before = distance_[node];
   if (active_.first(before) < 0 && resting_.first(before) < 0) {
     close_gap(before);
@@ -186,7 +186,7 @@ void CutNetwork::lift(int node) {
 }
 
 // Where no node has some distance, none leads to the first set from beyond.
-void CutNetwork::close_gap(int distance) {
+void SmallestCut::close_gap(int distance) {
   for (int level = distance + 1; level <= highest_; ++level) {
     for (Levels* nodes : {&active_, &resting_}) {
       while (nodes->first(level) >= 0) {

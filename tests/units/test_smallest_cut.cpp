@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solvers/cut_network.hpp"
+#include "solvers/smallest_cut.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 
 namespace {
 
-using Units = lsgp::CutNetwork::Units;
-using Edges = lsgp::Array<lsgp::CutNetwork::Edge>;
+using Units = lsgp::SmallestCut::Units;
+using Edges = lsgp::Array<lsgp::SmallestCut::Edge>;
 
 Edges random_edges(Random& random, int nodes, int count) {
   Edges out;
@@ -32,7 +32,7 @@ Edges grid_edges(Random& random, int side) {
 
 // Grows both sets, the lists of which begin with one node each, and compares with flows.
 void require_smallest_cuts(Random& random, int nodes, const Edges& edges) {
-  lsgp::CutNetwork network(nodes, edges);
+  lsgp::SmallestCut network(nodes, edges);
   lsgp::Array<lsgp::Array<int>> sets{{0}, {nodes - 1}};
   lsgp::Array<char> is_in_set(nodes, 0);
   is_in_set[0] = is_in_set[nodes - 1] = 1;
