@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tools/test --quick leaves out leaves tests of everything: most of those of each folder are not marked slow."""
+"""What tools/test --quick leaves out leaves tests of everything: half of those of each folder are not marked slow."""
 
 import ast
 from pathlib import Path
@@ -26,6 +26,6 @@ def left_out_in(path: Path) -> list[bool]:
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.relative_to(TESTS).as_posix())
-def test_most_of_a_folder_is_quick(folder: Path) -> None:
+def test_half_of_a_folder_is_quick(folder: Path) -> None:
     left_out = [is_left_out for path in folder.glob("test_*.py") for is_left_out in left_out_in(path)]
-    assert left_out.count(False) > left_out.count(True)
+    assert left_out.count(False) >= left_out.count(True)
