@@ -27,7 +27,7 @@ constexpr double most_growth = 4;
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long better orders are looked for at each effort, and then smaller squares, in about nanoseconds.
-constexpr double work_of_orders[]{4e6, 6e7, 1e9}, work_of_separation[]{8e6, 2.4e8, 9e9};
+constexpr double work_of_orders[]{4e6, 2e7, 1e9}, work_of_separation[]{8e6, 1.2e8, 9e9};
 // Of the seconds that are allowed, for orders.
 constexpr double share_of_orders = 0.1;
 // Of more bodies, overlaps of pairs are not looked at.
