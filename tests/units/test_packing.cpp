@@ -167,7 +167,7 @@ TEST_CASE("bodies are placed without meeting, at the gap or more, also in holes"
     ConstructionOptions how;
     how.gap = 1.25;
     how.on_texels = on_texels;
-    const Constructed found = construct(poses, {{70, 70, {}}, {90, 90, {}}}, order, {}, how, true);
+    const Constructed found = construct(poses, {{70, 70, {}}, {90, 90, {}}}, order, {}, how);
     REQUIRE(found.missing == 0);
     Array<Outline> placed;
     bool any_in_hole = false;
@@ -197,7 +197,7 @@ TEST_CASE("bodies that all lie on each other come apart, at the gap or more, whe
   Separation separation(poses, bodies, gap);
   Array<Placed> placed(poses.size(), Placed{0, 0, 0});
   double work = 0;
-  REQUIRE(separation.run(side, side, 50, 1e10, placed, random, work));
+  REQUIRE(separation.run({side, side, 50, 1e10}, placed, random, work));
   CHECK(work > 0);
   Array<Outline> outlines;
   for (std::size_t b = 0; b < poses.size(); ++b) {
@@ -208,7 +208,7 @@ TEST_CASE("bodies that all lie on each other come apart, at the gap or more, whe
   }
   CHECK(least_gap(outlines, 5) >= gap * (1 - 1e-12));
   const Array<Placed> before = placed;
-  CHECK(!separation.run(25, 25, 5, 1e10, placed, random, work));
+  CHECK(!separation.run({25, 25, 5, 1e10}, placed, random, work));
   for (std::size_t b = 0; b < poses.size(); ++b) CHECK(placed[b].at == before[b].at);
 }
 

@@ -76,7 +76,8 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
       if (island[t] < 0 || bodies[body_of[island[t]]].keeps_place) continue;
       const Body& body = bodies[body_of[island[t]]];
       const auto& [tile, factor, shift] = motions[body_of[island[t]]];
-      const Complex offset = shift + Complex(tile % tiles_in_row, tile / tiles_in_row);
+      const int column = tile % tiles_in_row, tile_row = tile / tiles_in_row;
+      const Complex offset = shift + Complex(column, tile_row);
       for (Eigen::Index row = 3 * static_cast<Eigen::Index>(t); row < 3 * static_cast<Eigen::Index>(t) + 3; ++row) {
         const Complex z = (Complex(out(row, 0), out(row, 1)) - body.origin) * factor + offset;
         out(row, 0) = z.real();

@@ -109,7 +109,7 @@ class Tile {
     if (last_column < 0) return std::numeric_limits<int>::max();
     for (int row = first_row_; row <= last_row; ++row) {
       if (!(cost_of(pose, 0, row) < best.cost)) return row;
-      if (search_row(pose, number, row, 0, last_column, best)) return row;
+      if (search_row(pose, number, {row, 0, last_column}, best)) return row;
     }
     return std::max(last_row + 1, first_row_);
   }
@@ -123,18 +123,23 @@ class Tile {
     const double last_inside = used_height_ - pose.height;
     const int beside = std::max(static_cast<int>(std::floor(used_width_ - pose.width)), 0);
     for (int row = 0; row <= last_row && cost_of(pose, 0, row) < best.cost; ++row)
-      search_row(pose, number, row, row <= last_inside ? beside : 0, last_column, best);
+      search_row(pose, number, {row, row <= last_inside ? beside : 0, last_column}, best);
   }
 
-  // Whether there is a place in a row.
-  bool search_row(const Pose& pose, int number, int row, int begin, int last, Candidate& best) {
+  // Places from the first column to the last one.
+  struct PlacesInRow {
+    int row, first, last;
+  };
+
+  // Whether one of the places is free.
+  bool search_row(const Pose& pose, int number, const PlacesInRow& places, Candidate& best) {
     double looks = 0;
-    const int column = taken_.first_free(pose.footprint, row, begin, last, looks);
+    const int column = taken_.first_free(pose.footprint, places.row, places.first, places.last, looks);
     checkpoint(operations_a_searched_row);
     work_ += cost_of_row + cost_of_look * looks;
     if (column < 0) return false;
-    const Cost cost = cost_of(pose, column, row);
-    if (cost < best.cost) best = {cost, number, column, row};
+    const Cost cost = cost_of(pose, column, places.row);
+    if (cost < best.cost) best = {cost, number, column, places.row};
     return true;
   }
 
@@ -183,7 +188,7 @@ double mean_extent(const Array<Array<Pose>>& poses) {
 }  // namespace
 
 Constructed construct(const Array<Array<Pose>>& poses, const Array<TileSpace>& tiles, const Array<Index>& order,
-                      const Array<int>& pose, const ConstructionOptions& options, bool stops_early) {
+                      const Array<int>& pose, const ConstructionOptions& options) {
   Constructed out;
   out.placed.resize(poses.size());
   Array<Tile> filled;
@@ -200,7 +205,7 @@ Constructed construct(const Array<Array<Pose>>& poses, const Array<TileSpace>& t
     }
     if (placed.tile >= 0) continue;
     ++out.missing;
-    if (stops_early) break;
+    if (options.stops_early) break;
   }
   for (const Tile& tile : filled) {
     out.width = std::max(out.width, tile.used_width());

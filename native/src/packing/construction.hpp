@@ -33,6 +33,7 @@ struct ConstructionOptions {
   PlaceRule rule = PlaceRule::lowest;
   // Places that were taken up to a body are not looked at again for those that are hardly smaller.
   bool skips_full_rows = false;
+  bool stops_early = false;  // at the first body without a place
 };
 
 struct Constructed {
@@ -45,8 +46,7 @@ struct Constructed {
 // Places bodies one by one in this order, each in the first tile that has room. The rectangle around all of a tile is
 // compared with the tile.
 // pose: (bodies) the one that a body has to take; -1: any.
-// stops_early: at the first body without a place.
 Constructed construct(const Array<Array<Pose>>& poses, const Array<TileSpace>& tiles, const Array<Index>& order,
-                      const Array<int>& pose, const ConstructionOptions& options, bool stops_early);
+                      const Array<int>& pose, const ConstructionOptions& options);
 
 }  // namespace lsgp

@@ -133,10 +133,11 @@ LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side, dou
   how.gap = gap(side) / now_.texel;
   how.on_texels = options_.snap > 0;
   how.rule = order.rule;
+  how.stops_early = true;
   constexpr std::size_t few = 128;
   how.skips_full_rows = free_.size() > few;
   Attempt out;
-  out.found = construct(now_.poses, tiles(grows() ? room * side : side), order.bodies, order.pose, how, true);
+  out.found = construct(now_.poses, tiles(grows() ? room * side : side), order.bodies, order.pose, how);
   work_ += out.found.work;
   if (out.found.missing > 0) {
     out.side = side * failed_growth;
@@ -315,7 +316,7 @@ void LayoutSearch::separate(const Budget& budget) {
     for (const Index b : free_) tried.found.placed[b].at *= factor;
     for (std::size_t swaps = 0; swaps < std::min<std::size_t>(failures, 3); ++swaps)
       std::swap(tried.found.placed[free_[below(count)]].at, tried.found.placed[free_[below(count)]].at);
-    const bool is_done = separation->run(width, height, patience, budget.work(), tried.found.placed, random_, work_);
+    const bool is_done = separation->run({width, height, patience, budget.work()}, tried.found.placed, random_, work_);
     if (is_done) {
       settle(tried.found, gap_now);
       tried.side = std::max((tried.found.width * now_.texel + 2 * tolerance_) / (inside_.right - inside_.left),
@@ -447,7 +448,7 @@ void LayoutSearch::refuse(const Order& order, double side) {
     space.width = ((inside_.right - inside_.left) * scale - 2 * tolerance_) / now_.texel;
     space.height = ((inside_.top - inside_.bottom) * scale - 2 * tolerance_) / now_.texel;
   }
-  const Constructed found = construct(now_.poses, spaces, order.bodies, order.pose, how, false);
+  const Constructed found = construct(now_.poses, spaces, order.bodies, order.pose, how);
   std::vector<Index> left_out;
   Index fitting = 0;
   for (const Index b : free_) {

@@ -69,7 +69,8 @@ int Separation::overlap(Index a, const Place& at_a, Index b, const Place& at_b, 
     for (int x = left; x < right; x += BitRows::word_bits)
       count += bit_count(own.from(y - at_a.row, x - at_a.column) & widened.from(y - row, x - column));
   }
-  work_ += cost_of_row_pair * std::max(y - bottom, 0) * ((right - left) / BitRows::word_bits + 1);
+  const int words = (right - left) / BitRows::word_bits + 1;
+  work_ += cost_of_row_pair * std::max(y - bottom, 0) * words;
   return count;
 }
 
@@ -189,9 +190,9 @@ double Separation::total_overlap() {
   return sum;
 }
 
-bool Separation::run(double width, double height, int patience, double most_work, Array<Placed>& placed,
-                     std::mt19937& random, double& work) {
+bool Separation::run(const SeparationLimits& limits, Array<Placed>& placed, std::mt19937& random, double& work) {
   constexpr double cost_of_run = 1e4;
+  const auto [width, height, patience, most_work] = limits;
   width_ = width;
   height_ = height;
   work_ = 0;

@@ -12,6 +12,13 @@
 
 namespace lsgp {
 
+// The size of a tile, in texels, how many rounds may make nothing better, and after about how much work to give up.
+struct SeparationLimits {
+  double width, height;
+  int patience;
+  double most_work;
+};
+
 // Guided local search (Egeblad, Nielsen and Odgaard 2007; Gardeyn and Wauters 2025): bodies that overlap others move to
 // where they overlap least, and the overlaps that stay weigh more and more. Bodies lie at whole texels.
 class Separation {
@@ -19,11 +26,9 @@ class Separation {
   // poses: have to live longer. bodies: those that are placed. gap: between bodies, in texels.
   Separation(const Array<Array<Pose>>& poses, const Array<Index>& bodies, double gap);
 
-  // Moves bodies into a tile of this size, in texels, without overlaps; false if they still overlap when no round of
-  // `patience` has made it better, or after about this much work. placed: (all bodies). work: is added to, as of
-  // Constructed.
-  bool run(double width, double height, int patience, double most_work, Array<Placed>& placed, std::mt19937& random,
-           double& work);
+  // Moves bodies into the tile without overlaps; false if they still overlap at one of the limits. placed: (all
+  // bodies). work: is added to, as of Constructed.
+  bool run(const SeparationLimits& limits, Array<Placed>& placed, std::mt19937& random, double& work);
 
  private:
   struct Place {
