@@ -173,7 +173,8 @@ def test_islands_are_spread_over_udim_tiles(preset):
     corners, owner = complex_corners(objects)
     assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
     grown = [area(UvMap(obj)) / old for obj, old in zip(objects, before, strict=True)]
-    assert min(grown) > 4 / 3
+    # With Paint the largest island nearly fills a tile alone; Bake cuts it.
+    assert min(grown) > (4 / 3 if preset == "BAKE" else 1)
     assert max(grown) / min(grown) < 1.001
 
 
