@@ -17,7 +17,7 @@ from . import _lsgp
 from .api import cone_arrays
 from .base import arguments
 from .base.arguments import FloatArray, IndexArray
-from .base.edge_keys import edge_keys
+from .base.edge_keys import edge_keys, side_keys
 from .base.equality import EqualByContent
 from .base.short_repr import ShortRepr
 from .options import Options
@@ -139,7 +139,7 @@ def part_surface(surface: Surface, part: LedgerPart) -> Surface:
 def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Surface:
     """These triangles by themselves, with what is marked on them; vertices keep their numbers."""
     kept = surface.triangles[triangles]
-    keys = edge_keys(kept, np.roll(kept, -1, axis=1), len(surface.positions))
+    keys = side_keys(kept, len(surface.positions))
 
     def is_on_them(edges: IndexArray) -> NDArray[np.bool_]:
         return np.isin(edge_keys(edges[:, 0], edges[:, 1], len(surface.positions)), keys)

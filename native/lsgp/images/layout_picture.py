@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
-from ..base.edge_keys import edge_keys
+from ..base.edge_keys import edge_keys, side_keys
 from ..base.progress import UNTOLD
 from ..indexed_uv import index_uv
 from ..results import Result
@@ -187,7 +187,7 @@ def _paths_of_sides(surface: Surface, paths: Sequence[IndexArray]) -> NDArray[np
     numbers = np.repeat(np.arange(len(paths)), [len(of_path) for of_path in keys])
     along = np.concatenate([np.empty(0, np.int64), *keys])
     order = np.argsort(along, kind="stable")
-    sides = _side_keys(surface.triangles, count)
+    sides = side_keys(surface.triangles, count)
     at = np.searchsorted(along[order], sides)
     found = np.append(along[order], -1)[at] == sides
     return np.where(found, np.append(numbers[order], -1)[at], -1)
@@ -195,16 +195,11 @@ def _paths_of_sides(surface: Surface, paths: Sequence[IndexArray]) -> NDArray[np
 
 def _have_no_partner(corners: IndexArray) -> NDArray[np.bool_]:
     """(3 m,), whether each side of each triangle, (m, 3) with -1 in those that do not count, is a side of no other."""
-    keys = _side_keys(corners, int(corners.max(initial=0)) + 1)
+    keys = side_keys(corners, int(corners.max(initial=0)) + 1)
     counts = np.repeat((corners >= 0).all(axis=1), 3)
     _, index, times = np.unique(keys[counts], return_inverse=True, return_counts=True)
     counts[counts] = times[index] == 1
     return counts
-
-
-def _side_keys(corners: IndexArray, count: int) -> NDArray[np.int64]:
-    """(3 m,), a number for each side of triangles, (m, 3), from corner c to c + 1."""
-    return edge_keys(corners, corners[:, [1, 2, 0]], count).ravel()
 
 
 def _cones_in_layout(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
-from ..base.edge_keys import edge_keys
+from ..base.edge_keys import edge_keys, side_keys
 from ..base.unique_rows import unique_rows
 from ..ledger import build_ledger
 from ..results import Result
@@ -43,7 +43,7 @@ class Components:
 
     def of_edges(self, edges: IndexArray) -> NDArray[np.intp]:
         """The component of each edge of the surface; edges: (e, 2)."""
-        sides = side_keys(self.surface)
+        sides = side_keys(self.surface.triangles, len(self.surface.positions))
         order = np.argsort(sides, kind="stable")
         return self.of_triangle[order[np.searchsorted(sides, keys_of(edges, self.surface), sorter=order)] // 3]
 
@@ -98,11 +98,6 @@ class Components:
     def _sums(self, component: NDArray[np.intp], values: FloatArray) -> FloatArray:
         is_of_one = component >= 0
         return np.bincount(component[is_of_one], values[is_of_one], minlength=self.count)
-
-
-def side_keys(surface: Surface) -> NDArray[np.int64]:
-    """The keys of the sides of the triangles, (3m,), corner by corner."""
-    return keys_of(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), surface)
 
 
 def keys_of(edges: IndexArray, surface: Surface) -> NDArray[np.int64]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
+from ..base.edge_keys import side_keys
 from ..base.progress import Progress
 from ..errors import InputError
 from ..lattice import island_boxes
@@ -19,7 +20,7 @@ from ..options import Options
 from ..results import Result
 from ..surface import Surface
 from ..triangles import uv_area
-from .components import Components, keys_of, side_keys
+from .components import Components, keys_of
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -234,7 +235,7 @@ def run_along_axes(surface: Surface, result: Result, edges: IndexArray) -> NDArr
     along = np.abs(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv).reshape(-1, 2)
     with np.errstate(invalid="ignore"):
         is_along = along.min(axis=1) <= _ROUNDING * along.max(axis=1)
-    return np.isin(keys_of(edges, surface), side_keys(surface)[is_along])
+    return np.isin(keys_of(edges, surface), side_keys(surface.triangles, len(surface.positions))[is_along])
 
 
 def reached_up_to(target: float, result: Result, options: Options) -> float:
