@@ -44,6 +44,23 @@ double distance(Complex point, Complex a, Complex b) {
   return std::abs(point - a - share * (b - a));
 }
 
+// The least distance between segments of different outlines, or `reach` if that is less; 0 where segments cross.
+double least_gap(const Array<Outline>& outlines, double reach) {
+  const auto turns = [](Complex a, Complex b, Complex c) { return std::imag(std::conj(b - a) * (c - a)); };
+  double least = reach;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    outlines[i].for_each_segment([&](Complex a, Complex b) {
+      for (std::size_t j = 0; j < i; ++j) {
+        outlines[j].for_each_segment([&](Complex c, Complex d) {
+          if (turns(a, b, c) * turns(a, b, d) < 0 && turns(c, d, a) * turns(c, d, b) < 0) least = 0;
+          least = std::min({least, distance(a, c, d), distance(b, c, d), distance(c, a, b), distance(d, a, b)});
+        });
+      }
+    });
+  }
+  return least;
+}
+
 std::ptrdiff_t segment_count(const Outline& outline) {
   std::ptrdiff_t count = 0;
   outline.for_each_segment([&](Complex, Complex) { ++count; });

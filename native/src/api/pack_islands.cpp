@@ -15,14 +15,15 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tiles_in_row = 10;
+constexpr int tiles_in_row = 10;  // from UDIM tile 1001 to 1010
 
 // The triangles of islands, for errors.
 Elements triangles_of(const std::vector<Index>& island, const Array<Index>& islands) {
   Elements out{ElementKind::triangles, {}};
+  Array<char> is_one(*std::max_element(islands.begin(), islands.end()) + 1, 0);
+  for (const Index i : islands) is_one[i] = 1;
   for (std::size_t t = 0; t < island.size(); ++t) {
-    if (std::find(islands.begin(), islands.end(), island[t]) != islands.end())
-      out.indices.push_back(static_cast<Index>(t));
+    if (island[t] >= 0 && island[t] < ssize(is_one) && is_one[island[t]]) out.indices.push_back(static_cast<Index>(t));
   }
   return out;
 }

@@ -37,20 +37,25 @@ void add_between(Complex begin, Complex end, int count, Array<Complex>& out) {
 // get finer.
 Complex squarest_turn(const Array<Complex>& hull) {
   constexpr int steps = 64, refinements = 3;
-  const auto side = [&](Complex turn) {
+  const auto side_at = [&](Complex turn) {
     const Extent extent = extent_along(hull, std::conj(turn));
     return std::max(extent.width(), extent.height());
   };
   Complex begin = 1, end = quarter_turned(1), best = 1;
+  double least = side_at(best);
   for (int i = 0; i < refinements; ++i) {
     Array<Complex> turns;
     add_between(begin, end, steps, turns);
     turns.push_back(end);
-    const auto found =
-        std::min_element(turns.begin(), turns.end(), [&](Complex a, Complex b) { return side(a) < side(b); });
-    if (side(*found) < side(best)) best = *found;
-    begin = found == turns.begin() ? *found : *(found - 1);
-    end = found + 1 == turns.end() ? *found : *(found + 1);
+    Array<double> sides;
+    for (const Complex turn : turns) sides.push_back(side_at(turn));
+    const std::ptrdiff_t found = std::min_element(sides.begin(), sides.end()) - sides.begin();
+    if (sides[found] < least) {
+      least = sides[found];
+      best = turns[found];
+    }
+    begin = turns[std::max<std::ptrdiff_t>(found - 1, 0)];
+    end = turns[std::min<std::ptrdiff_t>(found + 1, ssize(turns) - 1)];
   }
   return best;
 }

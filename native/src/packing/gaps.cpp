@@ -25,32 +25,19 @@ struct Segments {
     }
   }
 
-  AabbTree tree(double widened) const {
+  AabbTree tree() const {
     Array<Box> boxes;
     for (std::size_t s = 0; s < owner.size(); ++s) {
       const auto [left, right] = std::minmax({tail[s].real(), head[s].real()});
       const auto [bottom, top] = std::minmax({tail[s].imag(), head[s].imag()});
-      boxes.push_back({left - widened, right + widened, bottom - widened, top + widened});
+      boxes.push_back({left, right, bottom, top});
     }
     return AabbTree(boxes);
   }
 };
 
-double distance(Complex point, Complex a, Complex b) {
-  const Complex along = b - a, to = point - a;
-  const double squared = std::norm(along);
-  const double share =
-      squared > 0 ? std::clamp((to.real() * along.real() + to.imag() * along.imag()) / squared, 0.0, 1.0) : 0.0;
-  return std::abs(to - share * along);
-}
-
 bool cross_each_other(Complex a, Complex b, Complex c, Complex d) {
   return cross(b - a, c - a) * cross(b - a, d - a) < 0 && cross(d - c, a - c) * cross(d - c, b - c) < 0;
-}
-
-double distance(Complex a, Complex b, Complex c, Complex d) {
-  if (cross_each_other(a, b, c, d)) return 0;
-  return std::min({distance(a, c, d), distance(b, c, d), distance(c, a, b), distance(d, a, b)});
 }
 
 bool is_inside(Complex point, const Outline& outline) {
@@ -66,20 +53,10 @@ bool is_inside(Complex point, const Outline& outline) {
 
 }  // namespace
 
-double least_gap(const Array<Outline>& outlines, double reach) {
-  const Segments all(outlines);
-  double least = reach;
-  all.tree(reach / 2).for_each_meeting_pair([&](Index i, Index j) {
-    if (all.owner[i] == all.owner[j]) return;
-    least = std::min(least, distance(all.tail[i], all.head[i], all.tail[j], all.head[j]));
-  });
-  return least;
-}
-
 std::pair<Index, Index> overlapping_pair(const Array<Outline>& outlines) {
   const Segments all(outlines);
   std::pair<Index, Index> found(-1, -1);
-  all.tree(0).any_meeting_pair([&](Index i, Index j) {
+  all.tree().any_meeting_pair([&](Index i, Index j) {
     if (all.owner[i] == all.owner[j] || !cross_each_other(all.tail[i], all.head[i], all.tail[j], all.head[j]))
       return false;
     found = std::minmax(all.owner[i], all.owner[j]);

@@ -65,12 +65,12 @@ bool LayoutSearch::sizes_depend_on_side() const { return options_.fill && (has_o
 
 // In the unit of bodies.
 double LayoutSearch::gap(double side) const {
-  const double scale = options_.fill ? side : 1.0;
+  const double scale = texture_unit(side);
   return 2 * options_.margin * scale + 2 * tolerance_ + widened * expected_side_;
 }
 
 double LayoutSearch::estimated_side() const {
-  const double width = inside_.right - inside_.left, height = inside_.top - inside_.bottom;
+  const double width = inner_width(), height = inner_height();
   double area = 0, around = 0, longest = 0;
   for (const Index b : free_) {
     const Box box = bodies_[b].outline.box();
@@ -81,7 +81,7 @@ double LayoutSearch::estimated_side() const {
   const double room = width * height * options_.tiles * first_fill;
   double side = std::max(std::sqrt(area / room), longest / std::max(width, height) / 2);
   for (int i = 0; i < 4; ++i) {
-    const double gap = 2 * options_.margin * (options_.fill ? side : 1.0);
+    const double gap = 2 * options_.margin * texture_unit(side);
     side = std::max(side, std::sqrt((area + gap * around + gap * gap * static_cast<double>(free_.size())) / room));
   }
   return side;
@@ -102,7 +102,7 @@ LayoutSearch::Order LayoutSearch::by_size() const {
 }
 
 void LayoutSearch::rasterize(double side) {
-  now_.texel = options_.snap > 0 ? options_.snap * (options_.fill ? side : 1.0) : expected_side_ / texels_;
+  now_.texel = options_.snap > 0 ? options_.snap * texture_unit(side) : expected_side_ / texels_;
   now_.rasterized_for = side;
   now_.poses.assign(bodies_.size(), {});
   for (const Index b : free_) {
@@ -113,13 +113,13 @@ void LayoutSearch::rasterize(double side) {
 
 Array<TileSpace> LayoutSearch::tiles(double side) const {
   const double scale = options_.fill || grows() ? side : 1.0;
-  const double width = (inside_.right - inside_.left) * scale - 2 * tolerance_;
-  const double height = (inside_.top - inside_.bottom) * scale - 2 * tolerance_;
+  const double width = inner_width() * scale - 2 * tolerance_;
+  const double height = inner_height() * scale - 2 * tolerance_;
   Array<TileSpace> out(options_.tiles, {width / now_.texel, height / now_.texel, {}});
   for (const Body& body : bodies_) {
     if (!body.keeps_place) continue;
     const Complex low(inside_.left, inside_.bottom);
-    const double texels = (options_.fill ? side : 1.0) / now_.texel;
+    const double texels = texture_unit(side) / now_.texel;
     const Complex shift = (body.origin - low) * texels - Complex(tolerance_, tolerance_) / now_.texel;
     out[0].obstacles.push_back(body.outline.moved(texels, shift));
   }
@@ -144,7 +144,7 @@ LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side, dou
   } else if (grows()) {
     const double width = out.found.width * now_.texel + 2 * tolerance_,
                  height = out.found.height * now_.texel + 2 * tolerance_;
-    out.side = std::max(width / (inside_.right - inside_.left), height / (inside_.top - inside_.bottom));
+    out.side = std::max(width / inner_width(), height / inner_height());
     out.is_valid = options_.fill ? out.side <= side : !has_area_ || out.side <= 1;
   } else {
     out.side = side;
@@ -165,7 +165,7 @@ bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
 // gaps lie beside each other as bodies do in rows of equal ones.
 double LayoutSearch::balanced_side(double needed, double with_margins_for) const {
   constexpr double most_share = 0.9;
-  const double width = inside_.right - inside_.left, height = inside_.top - inside_.bottom;
+  const double width = inner_width(), height = inner_height();
   const double share =
       std::min(2 * options_.margin * std::sqrt(static_cast<double>(free_.size()) / (width * height)), most_share);
   return (needed - share * with_margins_for) / (1 - share);
@@ -206,7 +206,7 @@ void LayoutSearch::tighten(double with_margins_for) {
   constexpr double near = 1.004;
   double area = 0;
   for (const Index b : free_) area += bodies_[b].keeps_scale ? 0 : bodies_[b].area;
-  double low = std::sqrt(area / ((inside_.right - inside_.left) * (inside_.top - inside_.bottom) * options_.tiles));
+  double low = std::sqrt(area / (inner_width() * inner_height() * options_.tiles));
   while (now_.side > near * low) {
     const double middle = (now_.side + std::max(low, now_.side / 2)) / 2;
     if (!take_if_better(now_.order, attempt(now_.order, middle))) low = middle;
@@ -309,8 +309,8 @@ void LayoutSearch::separate(const Budget& budget) {
     if (!separation || gap_now > too_wide * gap_needed) separation.emplace(now_.poses, free_, gap_now = gap_needed);
     const double factor = shrinks[failures % shrink_count];
     const double side = now_.side * factor;
-    const double width = ((inside_.right - inside_.left) * side - 2 * tolerance_) / now_.texel;
-    const double height = ((inside_.top - inside_.bottom) * side - 2 * tolerance_) / now_.texel;
+    const double width = (inner_width() * side - 2 * tolerance_) / now_.texel;
+    const double height = (inner_height() * side - 2 * tolerance_) / now_.texel;
     Attempt tried;
     tried.found = now_.found;
     for (const Index b : free_) tried.found.placed[b].at *= factor;
@@ -319,8 +319,8 @@ void LayoutSearch::separate(const Budget& budget) {
     const bool is_done = separation->run({width, height, patience, budget.work()}, tried.found.placed, random_, work_);
     if (is_done) {
       settle(tried.found, gap_now);
-      tried.side = std::max((tried.found.width * now_.texel + 2 * tolerance_) / (inside_.right - inside_.left),
-                            (tried.found.height * now_.texel + 2 * tolerance_) / (inside_.top - inside_.bottom));
+      tried.side = std::max((tried.found.width * now_.texel + 2 * tolerance_) / inner_width(),
+                            (tried.found.height * now_.texel + 2 * tolerance_) / inner_height());
       tried.is_valid = true;
     }
     Order order = now_.order;
@@ -370,7 +370,7 @@ Array<BodyMotion> LayoutSearch::best() {
 void LayoutSearch::require_enough_blocks() const {
   constexpr double most_blocks = 1 << 13;
   const double scale = has_area_ ? 1.0 : expected_side_;
-  const double width = (inside_.right - inside_.left) * scale, height = (inside_.top - inside_.bottom) * scale;
+  const double width = inner_width() * scale, height = inner_height() * scale;
   if (std::min(width, height) >= options_.snap && std::max(width, height) <= most_blocks * options_.snap) return;
   throw Error(Code::wrong_parameter,
               concat("snap is ", rounded(options_.snap), ", and the area inside the margins is ", rounded(width),
@@ -405,7 +405,7 @@ bool LayoutSearch::is_hardly_filled() const {
     area += bodies_[b].area;
     any_aligned |= bodies_[b].turns == IslandTurns::any && lies_along_axes(bodies_[b].outline);
   }
-  const double whole = (inside_.right - inside_.left) * (inside_.top - inside_.bottom) * options_.tiles;
+  const double whole = inner_width() * inner_height() * options_.tiles;
   return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
 }
 
@@ -423,13 +423,11 @@ Array<BodyMotion> LayoutSearch::motions() {
     moved.push_back(bodies_[b].outline.moved(out[b].factor, out[b].shift));
     all = around(all, moved.back().box());
   }
-  double side = options_.fill ? now_.side : 1.0;
+  double side = texture_unit(now_.side);
   Complex low = 0;
   if (grows() && options_.snap == 0) {
     low = {all.left, all.bottom};
-    if (options_.fill)
-      side = std::max((all.right - all.left) / (inside_.right - inside_.left),
-                      (all.top - all.bottom) / (inside_.top - inside_.bottom));
+    if (options_.fill) side = std::max((all.right - all.left) / inner_width(), (all.top - all.bottom) / inner_height());
   }
   for (const Index b : free_) {
     out[b].factor /= side;
@@ -442,11 +440,11 @@ void LayoutSearch::refuse(const Order& order, double side) {
   ConstructionOptions how;
   how.gap = gap(side) / now_.texel;
   how.on_texels = options_.snap > 0;
-  const double scale = options_.fill ? side : 1.0;
+  const double scale = texture_unit(side);
   Array<TileSpace> spaces = tiles(side);
   for (TileSpace& space : spaces) {
-    space.width = ((inside_.right - inside_.left) * scale - 2 * tolerance_) / now_.texel;
-    space.height = ((inside_.top - inside_.bottom) * scale - 2 * tolerance_) / now_.texel;
+    space.width = (inner_width() * scale - 2 * tolerance_) / now_.texel;
+    space.height = (inner_height() * scale - 2 * tolerance_) / now_.texel;
   }
   const Constructed found = construct(now_.poses, spaces, order.bodies, order.pose, how);
   std::vector<Index> left_out;

@@ -75,6 +75,10 @@ class LayoutSearch {
 
   bool grows() const;
   bool sizes_depend_on_side() const;
+  double inner_width() const { return inside_.right - inside_.left; }
+  double inner_height() const { return inside_.top - inside_.bottom; }
+  // A length of 1 in texture coordinates, in the unit of bodies.
+  double texture_unit(double side) const { return options_.fill ? side : 1.0; }
   double gap(double side) const;
   double estimated_side() const;
   Order by_size() const;
