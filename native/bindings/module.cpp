@@ -732,6 +732,8 @@ PYBIND11_MODULE(_lsgp, module) {
       if (pending) std::rethrow_exception(pending);
     } catch (const lsgp::Error& error) {
       raise_in_python(error);
+    } catch (const py::cast_error&) {  // an option of another type, or a number that does not fit
+      py::set_error(PyExc_TypeError, "An option has a type that it cannot have, or a number beyond its range.");
     } catch (const std::bad_alloc&) {
       raise_in_python({lsgp::Code::out_of_memory,
                        "There is not enough memory. Unwrap fewer faces at once, or close other programs."});

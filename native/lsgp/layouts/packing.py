@@ -15,7 +15,6 @@ from .. import _lsgp
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
-from ..base.unit_size import unit_exponent
 from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
@@ -35,9 +34,6 @@ DEFAULT_MARGIN = 4 / 1024
 
 # Of the time of finding stacks and packing those that stay.
 _STACKING = 0.3
-
-# Of coordinates whose squares do not overflow.
-_MOST_EXPONENT = 300
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,48 +138,7 @@ def pack_islands(
     options = _options(margin, fill, turned, udim, effort, seconds, area, snap)
     options["groups"] = np.zeros(0, np.int32) if groups is None else _group_numbers(groups, count)
     options["locks"] = _lock_flags(locks, count)
-    solved = np.flatnonzero(island >= 0)
-    lost = solved[~np.isfinite(uv[solved]).all(axis=(1, 2))]
-    if len(lost):
-        raise InputError(
-            "WRONG_PARAMETER",
-            f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
-            Elements("triangles", lost.astype(np.int32)),
-        )
-    if not len(solved):
-        return uv.copy()
-    return _packed_at_unit_size(uv, island, solved, options, progress)
-
-
-def _packed_at_unit_size(
-    uv: FloatArray, island: IndexArray, solved: NDArray[np.int64], options: dict[str, Any], progress: Progress | None
-) -> FloatArray:
-    """uv scaled by a power of two, so that no square of a coordinate overflows or vanishes; no digit hangs on it."""
-    fill = options["fill"]
-    exponent = unit_exponent(uv[solved], 0.0 if fill else options["margin"])
-    # What keeps its place or size has to fit to the area.
-    if options["locks"][:, [0, 2]].any() or (options["area"] is not None and not fill):
-        if exponent > _MOST_EXPONENT:
-            raise InputError(
-                "WRONG_PARAMETER",
-                f"corner_uv holds numbers of about 2^{exponent}, far outside the area that islands are packed into. "
-                "Move or scale them to it.",
-            )
-        exponent = 0
-    unit_uv = np.zeros_like(uv)
-    unit_uv[solved] = np.ldexp(uv[solved], -exponent)
-    lengths = {} if fill else {name: math.ldexp(options[name], -exponent) for name in ("margin", "snap")}
-    packed = _lsgp.pack_islands(unit_uv, island, {**options, **lengths}, progress)[solved]
-    out = uv.copy()
-    with np.errstate(over="ignore"):
-        out[solved] = packed if fill else np.ldexp(packed, exponent)
-    if not np.isfinite(out[solved]).all():
-        raise InputError(
-            "WRONG_PARAMETER",
-            "The square around the packed islands is larger than numbers can hold. Scale corner_uv and the margin "
-            "down.",
-        )
-    return out
+    return _lsgp.pack_islands(uv, island, options, progress)
 
 
 def _options(
@@ -236,7 +191,7 @@ def _group_numbers(groups: ArrayLike, count: int) -> IndexArray:
     found = arguments.islands("groups", groups)
     if len(found) < count:
         raise InputError("WRONG_SHAPE", f"groups has {len(found)} numbers; pass one for each of the {count} islands.")
-    return found[:count]
+    return found
 
 
 def _lock_flags(locks: Mapping[Kept, Sequence[int]] | None, count: int) -> NDArray[np.bool_]:

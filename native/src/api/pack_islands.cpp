@@ -15,17 +15,112 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tiles_in_row = 10;  // from UDIM tile 1001 to 1010
+constexpr int tiles_in_row = 10, most_tiles = 100;  // from UDIM tile 1001 to 1010, and to 1100
+// Of coordinates whose squares do not overflow.
+constexpr int most_exponent = 300;
 
-// The triangles of islands, for errors.
-Elements triangles_of(const std::vector<Index>& island, const Array<Index>& islands) {
+// The triangles for which that holds, for errors.
+template <typename Condition>
+Elements triangles_where(const std::vector<Index>& island, Condition condition) {
   Elements out{ElementKind::triangles, {}};
-  Array<char> is_one(*std::max_element(islands.begin(), islands.end()) + 1, 0);
-  for (const Index i : islands) is_one[i] = 1;
   for (std::size_t t = 0; t < island.size(); ++t) {
-    if (island[t] >= 0 && island[t] < ssize(is_one) && is_one[island[t]]) out.indices.push_back(static_cast<Index>(t));
+    if (condition(static_cast<Index>(t))) out.indices.push_back(static_cast<Index>(t));
   }
   return out;
+}
+
+Elements triangles_of(const std::vector<Index>& island, const Array<Index>& islands) {
+  Array<char> is_one(*std::max_element(islands.begin(), islands.end()) + 1, 0);
+  for (const Index i : islands) is_one[i] = 1;
+  return triangles_where(island, [&](Index t) {
+    const Index i = element(island, t);
+    return i >= 0 && i < ssize(is_one) && is_one[i];
+  });
+}
+
+// There are no more numbers than elements, so that no table of them is large.
+void require_numbers(const std::vector<Index>& numbers, const char* what) {
+  const Index most = static_cast<Index>(numbers.size());
+  const Elements wrong = triangles_where(numbers, [&](Index t) {
+    const Index number = element(numbers, t);
+    return number < -1 || number >= most;
+  });
+  if (wrong.indices.empty()) return;
+  throw Error(Code::index_out_of_range, concat("There is ", what, " ", element(numbers, wrong.indices[0]),
+                                               "; number them from 0 to at most ", most - 1, ", or -1 for none."));
+}
+
+void require_length(std::size_t length, Index island_count, const char* what) {
+  if (length == 0 || static_cast<Index>(length) >= island_count) return;
+  throw Error(Code::wrong_parameter,
+              concat("There are ", length, " ", what, "; pass one for each of the ", island_count, " islands."));
+}
+
+void require_sizes(const PackingOptions& options) {
+  const UvRectangle area = options.area.value_or(UvRectangle{});
+  const auto is_length = [](double value) { return value >= 0 && std::isfinite(value); };
+  const bool has_area = is_length(area.right - area.left) && is_length(area.top - area.bottom) &&
+                        area.left < area.right && area.bottom < area.top;
+  if (has_area && is_length(options.margin) && is_length(options.snap) && is_length(options.seconds.value_or(0)) &&
+      options.tiles >= 1 && options.tiles <= most_tiles)
+    return;
+  throw Error(
+      Code::wrong_parameter,
+      concat("The area is from ", area.left, ", ", area.bottom, " to ", area.right, ", ", area.top, ", the margin ",
+             options.margin, ", blocks ", options.snap, ", seconds ", options.seconds.value_or(0), ", tiles ",
+             options.tiles, "; pass finite numbers, an area with some room and from 1 to ", most_tiles, " tiles."));
+}
+
+Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
+  if (corner_uv.rows() != 3 * ssize(island)) {
+    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates of corners; pass ",
+                                              3 * ssize(island), ", three for each triangle."));
+  }
+  require_numbers(island, "an island");
+  require_numbers(options.groups, "a group");
+  Index island_count = 0;
+  for (const Index i : island) island_count = std::max(island_count, i + 1);
+  require_length(options.groups.size(), island_count, "groups");
+  require_length(options.locks.size(), island_count, "locks");
+  require_sizes(options);
+  const Elements lost = triangles_where(island, [&](Index t) {
+    return element(island, t) >= 0 && !corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t)).allFinite();
+  });
+  if (!lost.indices.empty()) {
+    throw Error(Code::wrong_parameter,
+                concat("corner_uv is not finite at triangle ", lost.indices[0],
+                       ", which lies in an island; give such triangles island -1."),
+                lost);
+  }
+  return island_count;
+}
+
+// Texture coordinates as multiples of a power of two near the largest, so that no square of one overflows or vanishes;
+// no digit hangs on it.
+struct UnitSize {
+  int exponent = 0;
+
+  double to_unit(double length) const { return std::ldexp(length, -exponent); }
+  double from_unit(double length) const { return std::ldexp(length, exponent); }
+};
+
+UnitSize unit_size(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
+  double largest = options.fill ? 0 : options.margin;
+  for (std::size_t t = 0; t < island.size(); ++t) {
+    if (island[t] >= 0)
+      largest = std::max(largest, corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t)).cwiseAbs().maxCoeff());
+  }
+  UnitSize unit;
+  std::frexp(largest, &unit.exponent);
+  // What keeps its place or size has to fit to the area.
+  const auto keeps = [](const IslandLock& lock) { return lock.place || lock.scale; };
+  if ((!options.area || options.fill) && std::none_of(options.locks.begin(), options.locks.end(), keeps)) return unit;
+  if (unit.exponent > most_exponent) {
+    throw Error(Code::wrong_parameter, concat("corner_uv holds numbers of about 2^", unit.exponent,
+                                              ", far outside the area that islands are packed into. Move or scale "
+                                              "them to it."));
+  }
+  return {};
 }
 
 void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& island, const UvRectangle& area) {
@@ -56,19 +151,24 @@ void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& i
 
 }  // namespace
 
-CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
+CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& given,
                       const Progress& progress) {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
-  const Array<Body> bodies = bodies_of(corner_uv, island, options);
+  const Index island_count = require_valid(corner_uv, island, given);
+  const UnitSize unit = unit_size(corner_uv, island, given);
+  PackingOptions options = given;
+  if (!options.fill) {
+    options.margin = unit.to_unit(options.margin);
+    options.snap = unit.to_unit(options.snap);
+  }
+  const Array<Body> bodies = bodies_of(corner_uv.unaryExpr([&](double x) { return unit.to_unit(x); }), island, options);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
     const Array<BodyMotion> motions = LayoutSearch(bodies, options, monitor).best();
-    Index island_count = 0;
-    for (const Index i : island) island_count = std::max(island_count, i + 1);
     Array<Index> body_of(island_count, -1);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       for (const Index i : bodies[b].islands) body_of[i] = static_cast<Index>(b);
@@ -80,10 +180,16 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
       const int column = tile % tiles_in_row, tile_row = tile / tiles_in_row;
       const Complex offset = shift + Complex(column, tile_row);
       for (Eigen::Index row = 3 * static_cast<Eigen::Index>(t); row < 3 * static_cast<Eigen::Index>(t) + 3; ++row) {
-        const Complex z = (Complex(out(row, 0), out(row, 1)) - body.origin) * factor + offset;
-        out(row, 0) = z.real();
-        out(row, 1) = z.imag();
+        const Complex at(unit.to_unit(out(row, 0)), unit.to_unit(out(row, 1)));
+        const Complex z = (at - body.origin) * factor + offset;
+        out(row, 0) = options.fill ? z.real() : unit.from_unit(z.real());
+        out(row, 1) = options.fill ? z.imag() : unit.from_unit(z.imag());
       }
+      if (out.middleRows<3>(3 * static_cast<Eigen::Index>(t)).allFinite()) continue;
+      throw Error(
+          Code::wrong_parameter,
+          "The square around the packed islands is larger than numbers can hold. Scale corner_uv and the margin "
+          "down.");
     }
   }
   monitor.advance(1);
