@@ -18,6 +18,8 @@ using namespace lsgp;
 
 namespace {
 
+constexpr Box anywhere{0, 1e9, 0, 1e9};
+
 // A square ring of eight triangles.
 Array<Complex> square_ring(double outer, double inner) {
   const Array<Complex> turn{1, Complex(0, 1), -1, Complex(0, -1)};
@@ -178,7 +180,7 @@ TEST_CASE("bodies are placed without meeting, at the gap or more, also in holes"
   Array<Index> order;
   for (const Outline& shape : shapes) {
     order.push_back(static_cast<Index>(poses.size()));
-    poses.push_back(poses_of(shape, {1, Complex(0, 1), std::polar(1.0, 0.3)}, 1));
+    poses.push_back(poses_of(shape, {1, Complex(0, 1), std::polar(1.0, 0.3)}, 1, anywhere));
   }
   for (const bool on_texels : {false, true}) {
     ConstructionOptions how;
@@ -208,7 +210,7 @@ TEST_CASE("bodies that all lie on each other come apart, at the gap or more, whe
   Array<Index> bodies;
   for (int k = 0; k < 12; ++k) {
     bodies.push_back(k);
-    poses.push_back(poses_of(Outline::around_triangles(star(random, 7, 10)), {1, Complex(0, 1)}, 1));
+    poses.push_back(poses_of(Outline::around_triangles(star(random, 7, 10)), {1, Complex(0, 1)}, 1, anywhere));
   }
   constexpr double gap = 1.7, side = 80;
   Separation separation(poses, bodies, gap);

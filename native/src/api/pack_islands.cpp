@@ -57,18 +57,26 @@ void require_length(std::size_t length, Index island_count, const char* what) {
 }
 
 void require_sizes(const PackingOptions& options) {
+  constexpr double most_aspect = 1 << 20;
   const UvRectangle area = options.area.value_or(UvRectangle{});
+  const double width = area.right - area.left, height = area.top - area.bottom;
   const auto is_length = [](double value) { return value >= 0 && std::isfinite(value); };
-  const bool has_area = is_length(area.right - area.left) && is_length(area.top - area.bottom) &&
-                        area.left < area.right && area.bottom < area.top;
-  if (has_area && is_length(options.margin) && is_length(options.snap) && is_length(options.seconds.value_or(0)) &&
-      options.tiles >= 1 && options.tiles <= most_tiles)
-    return;
-  throw Error(
-      Code::wrong_parameter,
-      concat("The area is from ", area.left, ", ", area.bottom, " to ", area.right, ", ", area.top, ", the margin ",
-             options.margin, ", blocks ", options.snap, ", seconds ", options.seconds.value_or(0), ", tiles ",
-             options.tiles, "; pass finite numbers, an area with some room and from 1 to ", most_tiles, " tiles."));
+  if (!(is_length(width) && width > 0 && is_length(height) && height > 0 && is_length(options.margin) &&
+        is_length(options.snap) && is_length(options.seconds.value_or(0)) && options.tiles >= 1 &&
+        options.tiles <= most_tiles)) {
+    throw Error(
+        Code::wrong_parameter,
+        concat("The area is from ", area.left, ", ", area.bottom, " to ", area.right, ", ", area.top, ", the margin ",
+               options.margin, ", blocks ", options.snap, ", seconds ", options.seconds.value_or(0), ", tiles ",
+               options.tiles, "; pass finite numbers, an area with some room and from 1 to ", most_tiles, " tiles."));
+  }
+  if (!options.fill && !options.area) return;
+  const double inner_width = width - 2 * options.margin, inner_height = height - 2 * options.margin;
+  const double least = std::min(inner_width, inner_height), most = std::max(inner_width, inner_height);
+  if (least > 0 && most <= most_aspect * least) return;
+  throw Error(Code::wrong_parameter, concat("Inside a margin of ", options.margin, " the area is ", inner_width, " by ",
+                                            inner_height, "; pass one with some room, of which no side is more than ",
+                                            most_aspect, " times as long as the other, or a smaller margin."));
 }
 
 Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
@@ -95,32 +103,57 @@ Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island,
   return island_count;
 }
 
-// Texture coordinates as multiples of a power of two near the largest, so that no square of one overflows or vanishes;
-// no digit hangs on it.
-struct UnitSize {
+// Lengths as multiples of a power of two, so that no square of one overflows or vanishes; no digit hangs on it.
+struct Unit {
   int exponent = 0;
 
-  double to_unit(double length) const { return std::ldexp(length, -exponent); }
-  double from_unit(double length) const { return std::ldexp(length, exponent); }
+  double of(double length) const { return std::ldexp(length, -exponent); }
+  double back(double length) const { return std::ldexp(length, exponent); }
 };
 
-UnitSize unit_size(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
-  double largest = options.fill ? 0 : options.margin;
+// Of the texture coordinates, and of the area, the margin and blocks.
+struct Units {
+  Unit given, packed;
+};
+
+Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
+  double largest = 0;
   for (std::size_t t = 0; t < island.size(); ++t) {
     if (island[t] >= 0)
       largest = std::max(largest, corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t)).cwiseAbs().maxCoeff());
   }
-  UnitSize unit;
-  std::frexp(largest, &unit.exponent);
-  // What keeps its place or size has to fit to the area.
-  const auto keeps = [](const IslandLock& lock) { return lock.place || lock.scale; };
-  if ((!options.area || options.fill) && std::none_of(options.locks.begin(), options.locks.end(), keeps)) return unit;
-  if (unit.exponent > most_exponent) {
-    throw Error(Code::wrong_parameter, concat("corner_uv holds numbers of about 2^", unit.exponent,
-                                              ", far outside the area that islands are packed into. Move or scale "
-                                              "them to it."));
+  const auto any_keeps = [&](bool IslandLock::* what) {
+    return std::any_of(options.locks.begin(), options.locks.end(), [&](const IslandLock& lock) { return lock.*what; });
+  };
+  const bool has_place = any_keeps(&IslandLock::place), has_size = !options.fill || any_keeps(&IslandLock::scale);
+  Units units;
+  if (!options.fill && !options.area && !has_place) {
+    std::frexp(std::max(largest, options.margin), &units.given.exponent);
+    units.packed = units.given;
+    return units;
   }
-  return {};
+  std::frexp(largest, &units.given.exponent);
+  const UvRectangle area = options.area.value_or(UvRectangle{});
+  units.packed.exponent = std::ilogb(std::max(area.right - area.left, area.top - area.bottom));
+  if (!has_place && !has_size) return units;
+  // What keeps its place or size has to fit to the area.
+  if (units.given.exponent - units.packed.exponent > most_exponent) {
+    throw Error(Code::wrong_parameter, concat("corner_uv holds numbers of about 2^", units.given.exponent,
+                                              ", far outside the area of about 2^", units.packed.exponent,
+                                              " that islands are packed into. Move or scale them to it."));
+  }
+  units.given = units.packed;
+  return units;
+}
+
+PackingOptions in_unit(PackingOptions options, const Unit& unit) {
+  options.margin = unit.of(options.margin);
+  options.snap = unit.of(options.snap);
+  if (options.area) {
+    auto& [left, bottom, right, top] = *options.area;
+    options.area = UvRectangle{unit.of(left), unit.of(bottom), unit.of(right), unit.of(top)};
+  }
+  return options;
 }
 
 void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& island, const UvRectangle& area) {
@@ -157,18 +190,16 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
-  const UnitSize unit = unit_size(corner_uv, island, given);
-  PackingOptions options = given;
-  if (!options.fill) {
-    options.margin = unit.to_unit(options.margin);
-    options.snap = unit.to_unit(options.snap);
-  }
-  const Array<Body> bodies = bodies_of(corner_uv.unaryExpr([&](double x) { return unit.to_unit(x); }), island, options);
+  const auto [unit, packed_unit] = choose_units(corner_uv, island, given);
+  const PackingOptions options = in_unit(given, packed_unit);
+  CornerUv scaled = corner_uv;
+  for (double& coordinate : scaled.reshaped()) coordinate = unit.of(coordinate);
+  const Array<Body> bodies = bodies_of(scaled, island, options);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
-    const Array<BodyMotion> motions = LayoutSearch(bodies, options, monitor).best();
+    const Array<BodyMotion> motions = LayoutSearch(bodies, options, packed_unit.back(1), monitor).best();
     Array<Index> body_of(island_count, -1);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       for (const Index i : bodies[b].islands) body_of[i] = static_cast<Index>(b);
@@ -180,10 +211,9 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
       const int column = tile % tiles_in_row, tile_row = tile / tiles_in_row;
       const Complex offset = shift + Complex(column, tile_row);
       for (Eigen::Index row = 3 * static_cast<Eigen::Index>(t); row < 3 * static_cast<Eigen::Index>(t) + 3; ++row) {
-        const Complex at(unit.to_unit(out(row, 0)), unit.to_unit(out(row, 1)));
-        const Complex z = (at - body.origin) * factor + offset;
-        out(row, 0) = options.fill ? z.real() : unit.from_unit(z.real());
-        out(row, 1) = options.fill ? z.imag() : unit.from_unit(z.imag());
+        const Complex z = (Complex(scaled(row, 0), scaled(row, 1)) - body.origin) * factor + offset;
+        out(row, 0) = packed_unit.back(z.real());
+        out(row, 1) = packed_unit.back(z.imag());
       }
       if (out.middleRows<3>(3 * static_cast<Eigen::Index>(t)).allFinite()) continue;
       throw Error(

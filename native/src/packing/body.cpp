@@ -152,11 +152,13 @@ Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes) 
   return out;
 }
 
-Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double scale) {
+Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double scale, const Box& room) {
+  const double width = room.right - room.left, height = room.top - room.bottom;
   Array<Pose> out;
   for (const Complex turn : turns) {
     const Outline turned = outline.moved(turn * scale, 0);
     const Box box = turned.box();
+    if (!(box.right - box.left <= width && box.top - box.bottom <= height)) continue;
     const Complex shift(-box.left, -box.bottom);
     Outline placed = turned.moved(1, shift);
     Footprint footprint(placed);

@@ -37,7 +37,8 @@ struct Pose {
   double width, height;
   Footprint footprint;
 };
-// outline: of the body, maybe simplified. scale: texels in its unit. Poses with equal outlines are one.
-Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double scale);
+// outline: of the body, maybe simplified. scale: texels in its unit. room: in texels; poses that are larger are left
+// out, and so are not rasterized. Poses with equal outlines are one.
+Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double scale, const Box& room);
 
 }  // namespace lsgp

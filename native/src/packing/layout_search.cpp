@@ -34,13 +34,16 @@ constexpr double share_of_orders = 0.1;
 constexpr std::size_t most_separated = 200;
 // By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
 constexpr double widened = 1e-9;
+// Texels of the area around obstacles, by the root of their number: what is placed there may be as small as it will.
+constexpr double most_texels_around_obstacles = 4096;
 // Outlines are simplified by so much of the side, and by this divided by the root of the number of bodies.
 constexpr double coarsest = 1e-4, coarsest_of_many = 1e-3;
 
 }  // namespace
 
-LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, ProgressMonitor& monitor)
-    : bodies_(bodies), options_(options), monitor_(monitor), has_area_(options.area.has_value()) {
+LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, double unit,
+                           ProgressMonitor& monitor)
+    : bodies_(bodies), options_(options), unit_(unit), monitor_(monitor), has_area_(options.area.has_value()) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     has_obstacles_ |= bodies[b].keeps_place;
     has_own_scales_ |= options.fill && bodies[b].keeps_scale && !bodies[b].keeps_place;
@@ -48,6 +51,7 @@ LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& opti
   }
   has_area_ |= options.fill || has_obstacles_ || options.tiles > 1;
   inside_ = options.area.value_or(UvRectangle{});
+  mean_length_ = std::sqrt((inside_.right - inside_.left) * (inside_.top - inside_.bottom));
   const double snap = options.snap;
   const double margin = snap > 0 ? std::ceil(options.margin / snap) * snap : options.margin;
   if (has_area_) {
@@ -66,20 +70,22 @@ bool LayoutSearch::sizes_depend_on_side() const { return options_.fill && (has_o
 // In the unit of bodies.
 double LayoutSearch::gap(double side) const {
   const double scale = texture_unit(side);
-  return 2 * options_.margin * scale + 2 * tolerance_ + widened * expected_side_;
+  return 2 * options_.margin * scale + 2 * tolerance_ + widened * expected_extent();
 }
 
 double LayoutSearch::estimated_side() const {
   const double width = inner_width(), height = inner_height();
-  double area = 0, around = 0, longest = 0;
+  double area = 0, around = 0, longest = 0, widest = 0;
   for (const Index b : free_) {
     const Box box = bodies_[b].outline.box();
     area += bodies_[b].area;
     around += (box.right - box.left) + (box.top - box.bottom);
     longest = std::max({longest, box.right - box.left, box.top - box.bottom});
+    widest = std::max(widest, std::min(box.right - box.left, box.top - box.bottom));
   }
   const double room = width * height * options_.tiles * first_fill;
-  double side = std::max(std::sqrt(area / room), longest / std::max(width, height) / 2);
+  double side =
+      std::max({std::sqrt(area / room), longest / std::max(width, height) / 2, widest / std::min(width, height) / 2});
   for (int i = 0; i < 4; ++i) {
     const double gap = 2 * options_.margin * texture_unit(side);
     side = std::max(side, std::sqrt((area + gap * around + gap * gap * static_cast<double>(free_.size())) / room));
@@ -102,12 +108,18 @@ LayoutSearch::Order LayoutSearch::by_size() const {
 }
 
 void LayoutSearch::rasterize(double side) {
-  now_.texel = options_.snap > 0 ? options_.snap * texture_unit(side) : expected_side_ / texels_;
+  now_.texel = options_.snap > 0 ? options_.snap * texture_unit(side) : expected_extent() / texels_;
+  if (options_.snap == 0 && has_obstacles_)
+    now_.texel = std::max(now_.texel, texture_unit(side) * mean_length_ / most_texels_around_obstacles);
   now_.rasterized_for = side;
+  // Tiles become at most so large.
+  const double most_side = options_.fill || grows() ? room_to_grow * std::max(side, most_growth * expected_side_) : 1.0;
+  const Box room{0, inner_width() * most_side / now_.texel, 0, inner_height() * most_side / now_.texel};
   now_.poses.assign(bodies_.size(), {});
   for (const Index b : free_) {
     const double scale = options_.fill && bodies_[b].keeps_scale ? side : 1.0;
-    now_.poses[b] = poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / now_.texel);
+    now_.poses[b] =
+        poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / now_.texel, room);
   }
 }
 
@@ -340,15 +352,15 @@ Array<BodyMotion> LayoutSearch::best() {
   const double texels_of_body = is_fine ? 40 : 24, least_texels = is_fine ? 256 : 128;
   constexpr double most_texels = 1024;
   texels_ = static_cast<int>(std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
-  if (expected_side_ <= std::max(texels_ * last_digit * farthest, no_size)) {
-    throw Error(
-        Code::wrong_parameter,
-        concat("The square that the islands fill is ", rounded(expected_side_ / std::max(farthest, expected_side_), 2),
-               " of their distance from the origin, too small to place them in. Move them to the origin, or "
-               "leave out those that are points."));
+  if (expected_extent() <= std::max(texels_ * last_digit * farthest, no_size)) {
+    throw Error(Code::wrong_parameter,
+                concat("The square that the islands fill is ",
+                       rounded(expected_extent() / std::max(farthest, expected_extent()), 2),
+                       " of their distance from the origin, too small to place them in. Move them to the origin, or "
+                       "leave out those that are points."));
   }
   if (options_.snap > 0) require_enough_blocks();
-  if (options_.snap == 0) tolerance_ = expected_side_ * std::min(coarsest, coarsest_of_many / std::sqrt(count));
+  if (options_.snap == 0) tolerance_ = expected_extent() * std::min(coarsest, coarsest_of_many / std::sqrt(count));
   for (const Body& body : bodies_)
     outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
   constexpr double few = 8, some = 64;
@@ -373,9 +385,9 @@ void LayoutSearch::require_enough_blocks() const {
   const double width = inner_width() * scale, height = inner_height() * scale;
   if (std::min(width, height) >= options_.snap && std::max(width, height) <= most_blocks * options_.snap) return;
   throw Error(Code::wrong_parameter,
-              concat("snap is ", rounded(options_.snap), ", and the area inside the margins is ", rounded(width),
-                     " by ", rounded(height), "; pass the side of blocks of which it has one, and at most ",
-                     most_blocks, " on a side."));
+              concat("snap is ", rounded(options_.snap * unit_), ", and the area inside the margins is ",
+                     rounded(width * unit_), " by ", rounded(height * unit_),
+                     "; pass the side of blocks of which it has one, and at most ", most_blocks, " on a side."));
 }
 
 void LayoutSearch::search() {
@@ -459,9 +471,9 @@ void LayoutSearch::refuse(const Order& order, double side) {
   std::sort(left_out.begin(), left_out.end());
   throw Error(
       Code::wrong_parameter,
-      concat("With a margin of ", rounded(options_.margin), " only ", fitting, " of ", fitting + ssize(left_out),
-             " islands fit into the area; left out are, for instance, ", list(left_out), ". Pass a smaller margin",
-             options_.fill ? "." : ", a larger area or smaller islands."));
+      concat("With a margin of ", rounded(options_.margin * unit_), " only ", fitting, " of ",
+             fitting + ssize(left_out), " islands fit into the area; left out are, for instance, ", list(left_out),
+             ". Pass a smaller margin", options_.fill ? "." : ", a larger area or smaller islands."));
 }
 
 }  // namespace lsgp

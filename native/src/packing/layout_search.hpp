@@ -43,8 +43,8 @@ class Budget {
 
 class LayoutSearch {
  public:
-  // bodies, options: have to live longer.
-  LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, ProgressMonitor& monitor);
+  // bodies, options: have to live longer. unit: of the lengths of options, for errors.
+  LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, double unit, ProgressMonitor& monitor);
 
   // How to move each body; those that keep their place are left out. Throws WRONG_PARAMETER where no layout is found.
   Array<BodyMotion> best();
@@ -77,6 +77,8 @@ class LayoutSearch {
   bool sizes_depend_on_side() const;
   double inner_width() const { return inside_.right - inside_.left; }
   double inner_height() const { return inside_.top - inside_.bottom; }
+  // The side of a square as large as the area at the expected side, in the unit of bodies.
+  double expected_extent() const { return expected_side_ * mean_length_; }
   // A length of 1 in texture coordinates, in the unit of bodies.
   double texture_unit(double side) const { return options_.fill ? side : 1.0; }
   double gap(double side) const;
@@ -102,8 +104,10 @@ class LayoutSearch {
 
   const Array<Body>& bodies_;
   const PackingOptions& options_;
+  const double unit_;
   ProgressMonitor& monitor_;
   UvRectangle inside_;  // the area without the margin at its border
+  double mean_length_;  // of the area: the side of a square as large
   bool has_area_;       // islands that keep their size have to fit into it
   bool has_obstacles_ = false, has_own_scales_ = false;
   Array<Index> free_;  // bodies that do not keep their place

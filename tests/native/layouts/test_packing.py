@@ -215,6 +215,60 @@ def test_an_island_lies_in_the_hole_of_another() -> None:
     assert room(np.arange(3 * len(uv)).reshape(-1, 3), packed, island).border >= 4 / 1024 - ROUNDING
 
 
+@pytest.mark.parametrize("locks", [None, {"scale": [0]}])
+@pytest.mark.parametrize("exponent", [-900, -20, -1, 1, 10, 500, 900])
+def test_an_area_of_another_size_is_filled_likewise(exponent: int, locks: dict | None) -> None:
+    """By a power of two it is the same to the last bit; what keeps its size becomes as much larger."""
+    uv, island = squares(5)
+    large = math.ldexp(1.0, exponent)
+    how = {"margin": 0.01, "effort": "quick", "locks": locks}
+    expected = lsgp.pack_islands(uv, island, area=(0, 0, 1, 0.5), **how)
+    how["margin"] *= large
+    given = uv if locks is None else uv * large
+    found = lsgp.pack_islands(given, island, area=(0, 0, large, large / 2), **how)
+    assert np.array_equal(found, expected * large)
+
+
+@pytest.mark.parametrize("fill", [True, False])
+@pytest.mark.parametrize(("width", "height"), [(1, 1000), (3e4, 1), (1e3, 1e6), (1e-6, 1e-5), (1e5, 1e5)])
+def test_areas_of_any_size_and_shape_take_little_memory(width: float, height: float, fill: bool) -> None:
+    """Raster and islands are small, or the area is much larger than these."""
+    narrow = min(width, height)
+    uv, island = squares(7, narrow / 20)
+    area, margin = (0, 0, width, height), narrow / 200
+    packed = lsgp.pack_islands(uv, island, margin, fill=fill, area=area, effort="quick")
+    factors = np.abs(moves(uv, packed, island))
+    assert factors == pytest.approx(factors[0, 0], rel=1e-9) and (fill or factors[0, 0] == pytest.approx(1))
+    assert overlapping_islands(packed / narrow, island) == 0
+    reach = packed.reshape(-1, 2)
+    assert (reach.min(axis=0) >= margin * (1 - 1e-6)).all()
+    assert (reach.max(axis=0) <= np.array([width, height]) * (1 + 1e-9) - margin).all()
+    # Seven squares side by side are at most as wide as the area.
+    assert not fill or factors[0, 0] * narrow / 20 > narrow / 8
+
+
+@pytest.mark.parametrize("side", [1e-3, 1e-6])
+def test_small_islands_find_room_around_one_that_keeps_its_place(side: float) -> None:
+    uv, island = squares(3, side)
+    uv[island == 0] *= 0.3 / side
+    uv[island == 0] += 0.1
+    packed = lsgp.pack_islands(uv, island, 1e-9, fill=False, area=(0, 0, 1, 1), locks={"place": [0]}, effort="quick")
+    assert np.array_equal(packed[island == 0], uv[island == 0])
+    assert overlapping_islands(packed, island) == 0 and packed.min() >= 0 and packed.max() <= 1
+
+
+def test_what_an_area_cannot_hold_is_refused_with_its_numbers() -> None:
+    uv, island = squares(2)
+    with pytest.raises(lsgp.InputError, match="only 0 of 2 islands fit"):
+        lsgp.pack_islands(uv * 1e6, island, fill=False, area=(0, 0, 1, 1))
+    with pytest.raises(lsgp.InputError, match="only 1 of 2 islands fit"):
+        lsgp.pack_islands(uv * 1e6, island, locks={"scale": [0]})
+    with pytest.raises(lsgp.InputError, match="far outside the area"):
+        lsgp.pack_islands(uv, island, 0, fill=False, area=(0, 0, 1e-200, 1e-200))
+    with pytest.raises(lsgp.InputError, match="no side is more than"):
+        lsgp.pack_islands(uv, island, 0, area=(0, 0, 1e7, 1))
+
+
 def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along() -> None:
     uv, island = squares(4)
     line = [[[9.0, 0.0], [9.1, 0.0], [9.05, 0.0]], [[9.0, 1.0], [9.0, 1.0], [9.0, 1.0]]]
