@@ -167,6 +167,9 @@ def layout_faults(given: Kit, uv: FloatArray, margin: float, *, fill: bool = Tru
     faults = []
     if not np.isfinite(uv).all():
         return ["coordinates are not finite"]
+    if not fill:  # so that no square overflows here
+        exponent = math.frexp(max(float(np.abs(uv).max()), margin))[1]
+        uv, margin = np.ldexp(uv, -exponent), math.ldexp(margin, -exponent)
     extent = float(np.ptp(uv.reshape(-1, 2), axis=0).max())
     rounding = ROUNDING * max(extent, float(np.abs(uv).max()))
     moves = similarities(given.corner_uv, uv, given.island)
