@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Families of surfaces of about any number of triangles, each with much of one thing: islands, boundary, handles,
-holes, seams, features, components, needles."""
+holes, seams, features, components, needles, corners of single polygons."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from collections.abc import Callable
 import lsgp
 import meshes
 import numpy as np
+from lsgp.io.mesh_files import triangulated
+from lsgp.io.polygons import PolygonMesh
 from meshes import Mesh
 
 
@@ -99,6 +101,24 @@ def soup(count: int) -> Mesh:
     return meshes.make(corners, np.arange(3 * count))
 
 
+def comb(teeth: int) -> PolygonMesh:
+    """Four corners a tooth on both caps, and a square for each of their sides."""
+    along = np.arange(teeth)[:, None] + np.array([0.2, 0.2, 0.7, 0.7])
+    outline = np.stack([along, np.tile([0.0, 5.0, 5.0, 0.0], (teeth, 1))], axis=-1).reshape(-1, 2)[::-1]
+    outline = np.concatenate([[[0, -1], [teeth, -1]], outline])
+    n = len(outline)
+    positions = np.concatenate([np.insert(outline, 2, z, axis=1) for z in (0.0, 0.5)])
+    low = np.arange(n)
+    sides = np.stack([low, np.roll(low, -1), np.roll(low, -1) + n, low + n], axis=1)
+    vertices = np.concatenate([low[::-1], low + n, sides.ravel()]).astype(np.int32)
+    return PolygonMesh(positions, vertices, np.array([n, n] + [4] * n, np.int64))
+
+
+def of_polygons(mesh: PolygonMesh) -> lsgp.Surface:
+    cut, _ = triangulated(mesh)
+    return lsgp.Surface(mesh.positions, cut.triangles, cut.edges)
+
+
 def _some_edges(mesh: Mesh) -> np.ndarray:
     edges = meshes.edges_of(mesh.triangles)
     return edges[np.random.RandomState(3).random_sample(len(edges)) < 0.3]
@@ -127,5 +147,6 @@ FAMILIES: dict[str, Callable[[int], lsgp.Surface]] = {
     **{mesh.__name__: _plain(mesh) for mesh in _MESHES},
     "seams": _seams,
     "features": _features,
+    "comb": lambda count: of_polygons(comb(max(1, count // 16))),
 }
 """From about how many triangles they are to have."""

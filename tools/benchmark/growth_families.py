@@ -14,8 +14,7 @@ from typing import Any
 import lsgp
 import meshes
 import numpy as np
-from lsgp.io.mesh_files import triangulated
-from lsgp.io.polygons import PolygonMesh
+from large_meshes import comb, of_polygons
 from meshes import Mesh
 from zoo.tunnels import tunneled_plate
 
@@ -119,24 +118,6 @@ def islands(count: int) -> lsgp.Surface:
 def teeth(count: int) -> lsgp.Surface:
     """A prism over a comb, whose two caps are single polygons: 32 triangles a tooth."""
     return of_polygons(comb(max(1, round(count / 16))))
-
-
-def comb(teeth: int) -> PolygonMesh:
-    """Four corners a tooth on both caps, and a square for each of their sides."""
-    along = np.arange(teeth)[:, None] + np.array([0.2, 0.2, 0.7, 0.7])
-    outline = np.stack([along, np.tile([0.0, 5.0, 5.0, 0.0], (teeth, 1))], axis=-1).reshape(-1, 2)[::-1]
-    outline = np.concatenate([[[0, -1], [teeth, -1]], outline])
-    n = len(outline)
-    positions = np.concatenate([np.insert(outline, 2, z, axis=1) for z in (0.0, 0.5)])
-    low = np.arange(n)
-    sides = np.stack([low, np.roll(low, -1), np.roll(low, -1) + n, low + n], axis=1)
-    vertices = np.concatenate([low[::-1], low + n, sides.ravel()]).astype(np.int32)
-    return PolygonMesh(positions, vertices, np.array([n, n] + [4] * n, np.int64))
-
-
-def of_polygons(mesh: PolygonMesh) -> lsgp.Surface:
-    cut, _ = triangulated(mesh)
-    return lsgp.Surface(mesh.positions, cut.triangles, cut.edges)
 
 
 def needles(count: int) -> lsgp.Surface:

@@ -2,6 +2,8 @@
 // The dual graph of a layout: its faces, and the edges that may be opened between them.
 #pragma once
 
+#include <utility>
+
 #include "base/array.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
@@ -35,6 +37,13 @@ struct FaceGraph {
   Array<Index> link_begin, link_of_face;  // (faces + 1), (2 links)
 
   Index face_count() const { return static_cast<Index>(area.size()); }
+  Index link_count(Index face) const { return link_begin[face + 1] - link_begin[face]; }
+  bool are_linked(Index face, Index other) const {
+    if (link_count(face) > link_count(other)) std::swap(face, other);
+    bool found = false;
+    for_each_link(face, [&](Index beside, const Link&) { found |= beside == other; });
+    return found;
+  }
 
   // Calls visit(other face, link).
   template <typename Visit>

@@ -51,6 +51,7 @@ OverlapSplitter::Conflict OverlapSplitter::find_conflict(Index seed) {
       out.entries.push_back(other);
     });
   }
+  looked_through_.clear();
   for (const Index entry : out.entries) out.is_two_sided = out.is_two_sided && side_[pairs_.partner[entry]] == 0;
   for (const Index entry : out.entries) side_[pairs_.of[entry]] = 0;
   checkpoint(operations_an_entry * static_cast<double>(out.entries.size()));
@@ -108,6 +109,7 @@ OverlapSplitter::Region OverlapSplitter::grow_region(const Conflict& conflict) {
     };
     for_each_beside(part, entry, add);
   }
+  looked_through_.clear();
   Region region;
   for (const Index entry : grown) {
     if (2 * depth_[entry] <= deepest || entry == seed) {

@@ -2,7 +2,10 @@
 // Divides a layout until no two faces of one part lie on each other.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <set>
+#include <utility>
 
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
@@ -47,7 +50,8 @@ class OverlapSplitter {
   }
   // Calls visit for the pairs of a part next to one: of the same faces or their neighbors.
   template <typename Visit>
-  void for_each_beside(Index part, Index entry, Visit visit) const {
+  void for_each_beside(Index part, Index entry, Visit visit) {
+    if (is_beside_many(entry)) return look_through_pairs(part, entry, visit);
     const auto look_up = [&](Index face, Index partner) {
       if (parts_.of_face[face] != part || parts_.of_face[partner] != part) return;
       const Index found = pairs_.find(face, partner);
@@ -59,6 +63,35 @@ class OverlapSplitter {
       look_up(face, partner);
       graph_.for_each_link(partner, [&](Index beside, const FaceGraph::Link&) { look_up(face, beside); });
     });
+  }
+  // The same, the pair as well, by going through the pairs of the face with fewer neighbors and of these. What was
+  // visited beside the other face already is left out, as it has been seen: polygons with thousands of corners are
+  // beside each of their neighbors.
+  template <typename Visit>
+  void look_through_pairs(Index part, Index entry, Visit visit) {
+    const auto [large, small] = by_links(entry);
+    const bool is_large_first = large == pairs_.of[entry];
+    const auto go_through = [&, large = large](Index face) {
+      if (parts_.of_face[face] != part || !looked_through_.emplace(large, is_large_first ? face : ~face).second) return;
+      for (Index other = pairs_.begin[face]; other < pairs_.begin[face + 1]; ++other) {
+        const Index partner = pairs_.partner[other];
+        if (parts_.of_face[partner] != part || (partner != large && !graph_.are_linked(partner, large))) continue;
+        visit(is_large_first ? pairs_.find(partner, face) : other);
+      }
+    };
+    go_through(small);
+    graph_.for_each_link(small, [&](Index face, const FaceGraph::Link&) { go_through(face); });
+  }
+  // The faces of a pair, the one with more links first.
+  std::pair<Index, Index> by_links(Index entry) const {
+    const Index own = pairs_.of[entry], partner = pairs_.partner[entry];
+    return graph_.link_count(own) >= graph_.link_count(partner) ? std::pair(own, partner) : std::pair(partner, own);
+  }
+  // Whether one of a pair's faces has so many neighbors that looking up all pairs of these takes long.
+  bool is_beside_many(Index entry) const {
+    constexpr std::int64_t few = 1024;
+    const std::int64_t own = graph_.link_count(pairs_.of[entry]), partner = graph_.link_count(pairs_.partner[entry]);
+    return (own + 1) * (partner + 1) > few;
   }
   Array<Part> list_parts() const;
   void add_conflicts(const Array<Index>& entries, Array<Part>& parts);
@@ -80,6 +113,9 @@ class OverlapSplitter {
   Array<char> is_seen_;  // (entries) 0
   Array<Index> depth_;   // (entries) none
   PerFace<char> side_;   // 0
+  // A face with many neighbors, and a face whose pairs with it and its neighbors were visited, ~face if it is the first
+  // of these pairs. Empty.
+  std::set<std::pair<Index, Index>> looked_through_;
 };
 
 }  // namespace lsgp

@@ -10,6 +10,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+from large_meshes import comb, of_polygons
 from map_checks import only, pairs
 from meshes import Mesh
 from nightly import some_nightly
@@ -425,3 +426,15 @@ def test_cuts_that_split_overlaps_are_not_required_ones(options: lsgp.Options) -
     ball = meshes.bumpy_sphere(2)
     whole = lsgp.parameterize(lsgp.Surface(ball.positions, ball.triangles), ball.cones, None, options)
     assert pairs(whole.required_cuts) == pairs(whole.cut_edges)
+
+
+@pytest.mark.slow
+def test_polygons_of_thousands_of_corners_come_apart_from_their_neighbors() -> None:
+    """The faces beside such a pair make millions of pairs, of which few overlap."""
+    given = of_polygons(comb(500))
+    found = lsgp.auto_unwrap(given, pack="shelves")
+    assert found.island.min() == 0 and found.island.max() > 0
+    assert len(lsgp.overlapping_triangles(found.corner_uv)) == 0
+    flat = np.ptp(given.positions[given.triangles][..., 2], axis=1) == 0
+    low = given.positions[given.triangles[:, 0], 2] == 0
+    assert all(len(np.unique(found.island[flat & side])) == 1 for side in (low, ~low))
