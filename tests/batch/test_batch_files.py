@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from batch_meshes import off_text
-from lsgp.batch.assets import Asset, Shard, require_distinct_results
+from lsgp.batch.assets import Shard, require_distinct_files
 from lsgp.batch.journal import Journal
 from lsgp.io import safe_files
 from lsgp.io.side_files import UsageError
@@ -142,13 +142,38 @@ def test_reports_are_not_written_over_the_cones_that_they_serve_as(batch, tmp_pa
 def test_results_that_differ_in_case_alone_need_a_folder_that_heeds_case(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    files = [Asset(name, tmp_path / name, 1) for name in ("A.obj", "a.obj")]
+    files = [(name, name) for name in ("A.obj", "a.obj")]
     monkeypatch.setattr("lsgp.batch.assets.ignores_case", lambda folder: True)
     with pytest.raises(UsageError, match=r"'A\.obj' and 'a\.obj' would both be written"):
-        require_distinct_results(tmp_path, files, [asset.name for asset in files])
+        require_distinct_files(tmp_path, files, [])
     monkeypatch.setattr("lsgp.batch.assets.ignores_case", lambda folder: False)
     if os.name == "posix":
-        require_distinct_results(tmp_path, files, [asset.name for asset in files])
+        require_distinct_files(tmp_path, files, [])
+
+
+@pytest.mark.parametrize(
+    "further",
+    [
+        *["a.off.obj/b.off", "a.off.obj.report.json/b.off", "summary.txt/b.off", "journal.jsonl/b.off"],
+        *["pictures/a.off.png/b.off", "contact-sheet.html/b.off"],
+    ],
+)
+def test_no_file_of_a_run_is_a_folder_of_another(batch, assets: Path, tmp_path: Path, further: str) -> None:
+    (assets / further).parent.mkdir(parents=True)
+    (assets / further).write_text(off_text(grid()))
+    done = batch("assets", "--out", "out", "--reports")
+    assert (done.returncode, "name of one of its folders" in done.stderr) == (2, True)
+    assert repr(further) in done.stderr and not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", WRITTEN[2:])
+def test_a_folder_in_the_place_of_a_file_is_told_before_the_work(
+    batch, assets: Path, tmp_path: Path, name: str
+) -> None:
+    (tmp_path / "out" / name).mkdir(parents=True)
+    done = batch("assets", "--out", "out", "--reports")
+    assert (done.returncode, "is a folder; name another" in done.stderr) == (2, True)
+    assert tree(tmp_path / "out") == {}
 
 
 def test_a_whole_run_waits_for_shards(batch, assets: Path, tmp_path: Path) -> None:

@@ -123,14 +123,29 @@ def report_name(output: str) -> str:
     return f"{output}.report.json"
 
 
-def require_distinct_results(out: Path, assets: Iterable[Asset], results: Iterable[str]) -> None:
-    """Raise UsageError where two assets have the same result in a folder."""
+def require_distinct_files(out: Path, results: Iterable[tuple[str, str]], others: Iterable[str]) -> None:
+    """Raise UsageError where two files of a run are one, one would be a folder of another, or one is a folder.
+
+    results: the names of assets and of their results in the folder `out`. others: names of its further files.
+    """
     owner: dict[str, str] = {}
     is_one = ignores_case(Path(os.path.realpath(out)))
-    for asset, result in zip(assets, results, strict=True):
-        other = owner.setdefault(name_by_case(result, ignores_case=is_one), asset.name)
-        if other != asset.name:
-            raise UsageError(f"'{other}' and '{asset.name}' would both be written to '{result}'; rename one of them")
+    written = [(f"'{asset}'", result) for asset, result in results]
+    written += [("the run itself", other) for other in others]
+    keys = [name_by_case(name, ignores_case=is_one) for _, name in written]
+    for key, (who, name) in zip(keys, written, strict=True):
+        other = owner.setdefault(key, who)
+        if other != who:
+            raise UsageError(f"{other} and {who} would both be written to '{name}'; rename one of them")
+        if (out / name).is_dir():
+            raise UsageError(f"'{out / name}', which {who} would be written to, is a folder; name another folder")
+    for key, (who, name) in zip(keys, written, strict=True):
+        for folder in PurePosixPath(key).parents:
+            if other := owner.get(str(folder)):
+                raise UsageError(
+                    f"{who} would be written to '{name}', and {other} to a file with the name of one of its folders; "
+                    "rename one of them"
+                )
 
 
 def _in_folder(folder: Path, out: Path, suffixes: tuple[str, ...], skipped: Counter[str]) -> dict[str, Path]:

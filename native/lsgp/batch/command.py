@@ -28,7 +28,7 @@ from .assets import (
     output_name,
     picture_name,
     report_name,
-    require_distinct_results,
+    require_distinct_files,
     shard_option,
     skipped_note,
 )
@@ -209,10 +209,10 @@ class _Files:
         return cls(args.out, results, others, read)
 
     def require_others_kept(self, args: argparse.Namespace) -> None:
-        """Raise UsageError where two results are one file, or where something would be written over a file that is
-        read, or through a link in the folder of the results."""
+        """Raise UsageError where two files of the run are one, or one lies in another, or where something would be
+        written over a file that is read, or through a link in the folder of the results."""
         outputs = [output for _, output in self.results]
-        require_distinct_results(self.out, (asset for asset, _ in self.results), outputs)
+        require_distinct_files(self.out, ((asset.name, output) for asset, output in self.results), self.others)
         results = [(asset.path, self.out / output) for asset, output in self.results]
         written = [self.out / name for name in self.others]
         require_inputs_kept(results, self.read, written, in_place=args.in_place)
