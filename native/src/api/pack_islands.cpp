@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/packing.hpp"
+#include "packing/best_layout.hpp"
 #include "packing/body.hpp"
 #include "packing/gaps.hpp"
 #include "packing/layout_search.hpp"
@@ -135,7 +136,11 @@ Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, 
   std::frexp(largest, &units.given.exponent);
   const UvRectangle area = options.area.value_or(UvRectangle{});
   units.packed.exponent = std::ilogb(std::max(area.right - area.left, area.top - area.bottom));
-  if (!has_place && !has_size) return units;
+  // Islands that lie in tiles or blocks already may stay there.
+  constexpr int near = 6;
+  const bool may_stay =
+      (options.tiles > 1 || options.snap > 0) && std::abs(units.given.exponent - units.packed.exponent) <= near;
+  if (!has_place && !has_size && !may_stay) return units;
   // What keeps its place or size has to fit to the area.
   if (units.given.exponent - units.packed.exponent > most_exponent) {
     throw Error(Code::wrong_parameter, concat("corner_uv holds numbers of about 2^", units.given.exponent,
@@ -182,6 +187,15 @@ void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& i
               triangles_of(island, both));
 }
 
+Array<BodyMotion> motions_of(const Array<Body>& bodies, const std::vector<Index>& island, const PackingOptions& options,
+                             double unit, ProgressMonitor& monitor) {
+  try {
+    return best_layout(bodies, options, unit, monitor).motions;
+  } catch (const NoRoom& error) {
+    throw Error(Code::wrong_parameter, error.message, triangles_of(island, error.islands));
+  }
+}
+
 }  // namespace
 
 CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& given,
@@ -199,7 +213,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
-    const Array<BodyMotion> motions = LayoutSearch(bodies, options, packed_unit.back(1), monitor).best();
+    const Array<BodyMotion> motions = motions_of(bodies, island, options, packed_unit.back(1), monitor);
     Array<Index> body_of(island_count, -1);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       for (const Index i : bodies[b].islands) body_of[i] = static_cast<Index>(b);

@@ -10,6 +10,20 @@
 
 namespace lsgp {
 
+// Pairs, fours and bytes of bits added up: what all processors have, and as fast as their instruction if most words are
+// 0.
+inline int bit_count(std::uint64_t word) {
+  constexpr std::uint64_t twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f,
+                          ones = 0x0101010101010101;
+  if (word == 0) return 0;
+  word -= word >> 1 & twos;
+  word = (word & fours) + (word >> 2 & fours);
+  return static_cast<int>(((word + (word >> 4)) & bytes) * ones >> 56);
+}
+
+// The number of the first bit that is set; 64: none is.
+inline int first_bit(std::uint64_t word) { return bit_count(~word & (word - 1)); }
+
 class BitRows {
  public:
   using Word = std::uint64_t;
@@ -33,6 +47,16 @@ class BitRows {
   }
 
   bool is_set(int row_number, int column) const { return from(row_number, column) & 1; }
+
+  // The first column from this one on that is set, or is not; `end` if there is none before.
+  int next(bool is_set, int row_number, int column, int end) const {
+    while (column < end) {
+      const Word found = is_set ? from(row_number, column) : ~from(row_number, column);
+      if (found != 0) return std::min(column + first_bit(found), end);
+      column += word_bits;
+    }
+    return end;
+  }
 
   // Sets the columns from begin up to end, as far as there are such.
   void set(int row_number, int begin, int end) {

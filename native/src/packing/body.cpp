@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "base/checkpoint.hpp"
 #include "plane/convex_hull.hpp"
@@ -33,6 +35,22 @@ void add_between(Complex begin, Complex end, int count, Array<Complex>& out) {
   add_between(middle, end, count / 2, out);
 }
 
+// Of the order of bodies.
+bool is_body_before(const Body& a, const Body& b) {
+  const auto size = [](const Body& body) {
+    const Box box = body.outline.box();
+    return (box.right - box.left) + (box.top - box.bottom);
+  };
+  const auto kept = [](const Body& body) { return std::tuple(body.keeps_place, body.keeps_scale, body.turns); };
+  const double size_of_a = size(a), size_of_b = size(b);
+  if (size_of_a != size_of_b) return size_of_a > size_of_b;
+  if (a.area != b.area) return a.area > b.area;
+  if (kept(a) != kept(b)) return kept(a) < kept(b);
+  // Those that keep their place differ by it alone, if they have one shape.
+  if (a.keeps_place && a.origin != b.origin) return is_before(a.origin, b.origin);
+  return is_before(a.outline.points(), b.outline.points());
+}
+
 // The turn of a convex polygon, within a quarter, for which the square around it is smallest; looked for in steps that
 // get finer.
 Complex squarest_turn(const Array<Complex>& hull) {
@@ -60,6 +78,39 @@ Complex squarest_turn(const Array<Complex>& hull) {
   return best;
 }
 
+// The outline, area and hull of a body whose islands have these corners. Rounding does not hang on the order of
+// islands, triangles or corners.
+void add_shape(const Array<Array<Complex>>& corners_of, Body& body) {
+  constexpr double most = std::numeric_limits<double>::infinity();
+  double left = most, bottom = most;
+  for (const Index i : body.islands) {
+    for (const Complex z : corners_of[i]) {
+      left = std::min(left, z.real());
+      bottom = std::min(bottom, z.imag());
+    }
+  }
+  body.origin = {left, bottom};
+  Array<double> areas;
+  Array<Outline> outlines;
+  for (const Index i : body.islands) {
+    Array<Complex> corners = corners_of[i];
+    for (Complex& z : corners) z -= body.origin;
+    for (auto corner = corners.begin(); corner != corners.end(); corner += 3) {
+      const auto first = std::min_element(corner, corner + 3, [](Complex a, Complex b) { return is_before(a, b); });
+      std::rotate(corner, first, corner + 3);
+      areas.push_back(std::abs(doubled_area(corner[0], corner[1], corner[2])) / 2);
+    }
+    outlines.push_back(Outline::around_triangles(corners));
+  }
+  std::sort(areas.begin(), areas.end());
+  for (const double area : areas) body.area += area;
+  std::sort(outlines.begin(), outlines.end(),
+            [](const Outline& a, const Outline& b) { return is_before(a.points(), b.points()); });
+  for (const Outline& outline : outlines) body.outline.append(outline);
+  const auto& points = body.outline.points();
+  body.hull = convex_hull(Eigen::Map<const Eigen::VectorXcd>(points.data(), static_cast<Eigen::Index>(points.size())));
+}
+
 bool is_same(const Pose& a, const Pose& b) {
   const double near = same * std::max(a.width, a.height);
   if (std::abs(a.width - b.width) > near || std::abs(a.height - b.height) > near) return false;
@@ -79,7 +130,6 @@ bool is_same(const Pose& a, const Pose& b) {
 Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
   Index island_count = 0;
   for (const Index i : island) island_count = std::max(island_count, i + 1);
-  Array<Index> body_of(island_count, -1);
   Array<Index> of_group;
   Array<Body> bodies;
   Array<Array<Complex>> corners(island_count);
@@ -99,22 +149,27 @@ Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& islan
       number = static_cast<Index>(bodies.size());
       bodies.emplace_back();
       bodies.back().turns = options.turns;
-      bodies.back().origin = corners[i][0];
       if (group >= 0) of_group[group] = number;
     }
     Body& body = bodies[number];
-    for (Complex& z : corners[i]) z -= body.origin;
-    for (std::size_t c = 0; c < corners[i].size(); c += 3)
-      body.area += std::abs(doubled_area(corners[i][c], corners[i][c + 1], corners[i][c + 2])) / 2;
     body.islands.push_back(i);
-    body.outline.append(Outline::around_triangles(corners[i]));
     if (options.locks.empty()) continue;
     const IslandLock& lock = element(options.locks, i);
     if (lock.rotation) body.turns = IslandTurns::none;
     body.keeps_scale |= lock.scale;
     body.keeps_place |= lock.place;
   }
+  for (Body& body : bodies) add_shape(corners, body);
+  std::stable_sort(bodies.begin(), bodies.end(), is_body_before);
   return bodies;
+}
+
+UvRectangle inside_margins(const PackingOptions& options, bool has_area) {
+  const double snap = options.snap;
+  const double margin = snap > 0 ? std::ceil(options.margin / snap) * snap : options.margin;
+  if (!has_area) return {margin, margin, margin + 1, margin + 1};
+  const UvRectangle area = options.area.value_or(UvRectangle{});
+  return {area.left + margin, area.bottom + margin, area.right - margin, area.top - margin};
 }
 
 bool lies_along_axes(const Outline& outline) {
@@ -131,17 +186,14 @@ bool lies_along_axes(const Outline& outline) {
 Array<Complex> turns_of(const Body& body, int directions, bool also_along_axes) {
   Array<Complex> within_quarter{1};
   if (body.turns == IslandTurns::any && (also_along_axes || !lies_along_axes(body.outline))) {
-    const auto& points = body.outline.points();
-    const Array<Complex> hull =
-        convex_hull(Eigen::Map<const Eigen::VectorXcd>(points.data(), static_cast<Eigen::Index>(points.size())));
-    if (hull.size() > 1) within_quarter = {std::conj(longer_side(hull))};
+    if (body.hull.size() > 1) within_quarter = {std::conj(longer_side(body.hull))};
     // Of what is hardly longer than rounding.
     if (!(std::abs(std::norm(within_quarter[0]) - 1) < same)) within_quarter[0] = 1;
     if (directions > 0) {
       Array<Complex> further;
       add_between(1, quarter_turned(1), directions, further);
       for (std::size_t i = 1; i < further.size(); ++i) within_quarter.push_back(further[i] * within_quarter[0]);
-      within_quarter.push_back(squarest_turn(hull));
+      within_quarter.push_back(squarest_turn(body.hull));
     }
   }
   if (body.turns == IslandTurns::none) return {1};
@@ -162,7 +214,9 @@ Array<Pose> poses_of(const Outline& outline, const Array<Complex>& turns, double
     const Complex shift(-box.left, -box.bottom);
     Outline placed = turned.moved(1, shift);
     Footprint footprint(placed);
-    Pose pose{turn, shift, std::move(placed), box.right - box.left, box.top - box.bottom, std::move(footprint)};
+    Array<Box> holes = placed.hole_boxes();
+    const double width = box.right - box.left, height = box.top - box.bottom;
+    Pose pose{turn, shift, std::move(placed), width, height, std::move(footprint), std::move(holes)};
     const auto is_known = [&](const Pose& other) { return is_same(other, pose); };
     if (std::none_of(out.begin(), out.end(), is_known)) out.push_back(std::move(pose));
   }

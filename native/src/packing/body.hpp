@@ -9,18 +9,33 @@
 
 namespace lsgp {
 
+// How a body is moved: around its origin it is multiplied, and then shifted, in texture coordinates.
+struct BodyMotion {
+  int tile = -1;
+  Complex factor, shift;
+};
+
+struct PackedLayout {
+  double side = 0;            // of the square that is filled, or by what the area is multiplied; in the unit of bodies
+  Array<BodyMotion> motions;  // (bodies) but for those that keep their place
+};
+
 struct Body {
   Array<Index> islands;  // their numbers
-  Complex origin;        // of the outline, in texture coordinates
+  Complex origin;        // of the outline, in texture coordinates: the low corner of its box
   Outline outline;       // around its origin
+  Array<Complex> hull;   // of the outline
   double area = 0;       // of all triangles
   IslandTurns turns = IslandTurns::any;
   bool keeps_scale = false;
   bool keeps_place = false;
 };
 
-// The bodies in the order of their first islands.
+// The bodies, the largest ones first, in an order that hangs on nothing but their shapes and what they keep.
 Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options);
+
+// The area without the margin at its border; if islands have none to fill, a square of side 1 beyond the margin.
+UvRectangle inside_margins(const PackingOptions& options, bool has_area);
 
 // Whether most of an outline is parallel to one of the axes.
 bool lies_along_axes(const Outline& outline);
@@ -36,6 +51,7 @@ struct Pose {
   Outline outline;
   double width, height;
   Footprint footprint;
+  Array<Box> holes;  // boxes around them
 };
 // outline: of the body, maybe simplified. scale: texels in its unit. room: in texels; poses that are larger are left
 // out, and so are not rasterized. Poses with equal outlines are one.

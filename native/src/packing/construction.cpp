@@ -22,6 +22,9 @@ constexpr int most_slides = 6;
 constexpr double longest_slide = 2, least_slide = 0.02;
 // Bodies that are not smaller than this part of the first of their class skip the rows in which that found no room.
 constexpr double class_size = 0.8;
+// By so much of a body's extent what is open grows at least where nothing was at first and full rows are skipped: after
+// each step all of it is looked at again.
+constexpr double step_of_many = 0.25;
 
 // What a place costs; less is better.
 struct Cost {
@@ -38,6 +41,8 @@ struct Candidate {
 };
 
 class Tile {
+  static constexpr int unknown = -1;
+
  public:
   Tile(const TileSpace& space, double cell, const ConstructionOptions& options)
       : width_(space.width),
@@ -45,8 +50,11 @@ class Tile {
         options_(options),
         // A body at the far sides touches the texels beyond them.
         taken_(static_cast<int>(height_) + 2, static_cast<int>(width_) + 2),
+        longest_free_(taken_.rows(), unknown),
         still_(width_, height_, cell) {
     work_ = cost_of_texel * width_ * height_;
+    open_width_ = options.open_share * width_;
+    open_height_ = options.open_share * height_;
     for (const Outline& outline : space.obstacles) keep(outline);
     has_obstacles_ = !space.obstacles.empty();
   }
@@ -62,22 +70,30 @@ class Tile {
       first_row_ = 0;
     }
     Candidate best;
-    int untried = std::numeric_limits<int>::max();  // the first row that may have room
-    const auto for_each_pose = [&](auto visit) {
-      for (int p = 0; p < static_cast<int>(poses.size()); ++p) {
-        if (wanted < 0 || p == wanted) visit(poses[p], p);
-      }
-    };
-    for_each_pose([&](const Pose& pose, int p) { untried = std::min(untried, search_inside(pose, p, best)); });
-    first_row_ = std::max(first_row_, untried);
-    if (best.pose < 0) for_each_pose([&](const Pose& pose, int p) { search_beyond(pose, p, best); });
+    Array<Searched> searched;
+    for (int p = 0; p < static_cast<int>(poses.size()); ++p) {
+      if (wanted < 0 || p == wanted) searched.push_back({&poses[p], p});
+    }
+    search_holes(searched, extent, best);
+    if (best.pose < 0) first_row_ = std::max(first_row_, search_inside(searched, best));
+    if (best.pose < 0) {
+      for (const Searched& one : searched) search_beyond(one, best);
+    }
     if (best.pose < 0) return std::nullopt;
     const Pose& pose = poses[best.pose];
     const Complex at = slid(pose, Complex(best.column, best.row));
     keep(pose.outline.moved(1, at));
-    if (at.real() + pose.width > used_width_) first_row_ = 0;
+    for (const Box& hole : pose.holes)
+      keep_hole({hole.left + at.real(), hole.right + at.real(), hole.bottom + at.imag(), hole.top + at.imag()});
     used_width_ = std::max(used_width_, at.real() + pose.width);
     used_height_ = std::max(used_height_, at.imag() + pose.height);
+    const double step = options_.skips_full_rows && options_.open_share == 0 ? step_of_many * extent : 0.0;
+    if (used_width_ > open_width_) {
+      open_width_ = std::max(used_width_, std::min(open_width_ + step, width_));
+      std::fill(longest_free_.begin(), longest_free_.end(), unknown);
+      first_row_ = 0;
+    }
+    if (used_height_ > open_height_) open_height_ = std::max(used_height_, std::min(open_height_ + step, height_));
     Placed out;
     out.pose = best.pose;
     out.at = at;
@@ -93,7 +109,7 @@ class Tile {
 
   Cost cost_of(const Pose& pose, int column, int row) const {
     const double right = column + pose.width, top = row + pose.height;
-    const double wide = std::max(used_width_, right) / width_, high = std::max(used_height_, top) / height_;
+    const double wide = std::max(open_width_, right) / width_, high = std::max(open_height_, top) / height_;
     const double side = std::max(wide, high);
     switch (options_.rule) {
       case PlaceRule::lowest: return {side * side + wide * high, row * width_ + column};
@@ -102,28 +118,92 @@ class Tile {
     }
   }
 
-  // Places where the rectangle around all does not grow. Returns the row up to which all are full.
-  int search_inside(const Pose& pose, int number, Candidate& best) {
-    const int last_row = static_cast<int>(std::floor(used_height_ - pose.height));
-    const int last_column = static_cast<int>(std::floor(used_width_ - pose.width));
-    if (last_column < 0) return std::numeric_limits<int>::max();
-    for (int row = first_row_; row <= last_row; ++row) {
-      if (!(cost_of(pose, 0, row) < best.cost)) return row;
-      if (search_row(pose, number, {row, 0, last_column}, best)) return row;
-    }
-    return std::max(last_row + 1, first_row_);
+  struct Searched {
+    const Pose* pose;
+    int number;
+    bool is_done = false;
+  };
+
+  struct Hole {
+    Box box;
+    double full_for;  // the size of the smallest body that was not placed in it
+    double size() const { return box.right - box.left + box.top - box.bottom; }
+  };
+
+  void keep_hole(const Box& box) {
+    const Hole hole{box, std::numeric_limits<double>::infinity()};
+    holes_.insert(std::upper_bound(holes_.begin(), holes_.end(), hole,
+                                   [](const Hole& a, const Hole& b) { return a.size() < b.size(); }),
+                  hole);
   }
 
-  // Places where it grows.
-  void search_beyond(const Pose& pose, int number, Candidate& best) {
+  // Places in holes of bodies, of which nothing else can make use, the smallest ones first.
+  void search_holes(const Array<Searched>& searched, double size, Candidate& best) {
+    constexpr double hardly_smaller = 0.98;
+    for (Hole& hole : holes_) {
+      if (best.pose >= 0) return;
+      if (size > hardly_smaller * hole.full_for || size >= hole.size()) continue;
+      for (const Searched& one : searched) {
+        const int last_column = static_cast<int>(std::floor(hole.box.right - one.pose->width));
+        const int last_row = static_cast<int>(std::floor(hole.box.top - one.pose->height));
+        const int first_column = static_cast<int>(hole.box.left);
+        for (int row = static_cast<int>(hole.box.bottom); row <= last_row; ++row) {
+          if (first_column <= last_column && search_row(one, {row, first_column, last_column}, best)) break;
+        }
+      }
+      if (best.pose < 0) hole.full_for = size;
+      checkpoint(operations_a_searched_row * (hole.box.top - hole.box.bottom));
+    }
+  }
+
+  // Places in what is open. Returns the row up to which all are full.
+  int search_inside(Array<Searched>& searched, Candidate& best) {
+    int untried = std::numeric_limits<int>::max();
+    std::size_t left = searched.size();
+    for (int row = first_row_; left > 0; ++row) {
+      for (Searched& one : searched) {
+        if (one.is_done) continue;
+        const Pose& pose = *one.pose;
+        const int last_row = static_cast<int>(std::floor(open_height_ - pose.height));
+        const int last_column = static_cast<int>(std::floor(open_width_ - pose.width));
+        one.is_done = last_column < 0 || row > last_row || !(cost_of(pose, 0, row) < best.cost) ||
+                      (has_room(pose.footprint, row) && search_row(one, {row, 0, last_column}, best));
+        if (!one.is_done) continue;
+        --left;
+        if (last_column >= 0) untried = std::min(untried, row);
+      }
+      checkpoint(operations_a_searched_row);
+    }
+    return untried;
+  }
+
+  // False: a footprint is wider than what is free in a row.
+  bool has_room(const Footprint& footprint, int row) {
+    constexpr std::size_t looks = 4;
+    const Array<Span>& spans = footprint.spans();
+    const int end = static_cast<int>(open_width_) + 1;
+    for (std::size_t s = 0; s < spans.size(); s += spans.size() / looks + 1) {
+      int& longest = longest_free_[row + spans[s].row];
+      if (longest == unknown) longest = taken_.longest_free(row + spans[s].row, end);
+      if (longest < spans[s].end - spans[s].begin) return false;
+    }
+    return true;
+  }
+
+  // Places beyond.
+  void search_beyond(const Searched& one, Candidate& best) {
+    const Pose& pose = *one.pose;
     // Beyond the gap around what is there, all is free but for obstacles.
     const double beyond = has_obstacles_ ? std::max(width_, height_) : options_.gap + 2;
-    const int last_row = static_cast<int>(std::floor(std::min(used_height_ + beyond, height_ - pose.height)));
-    const int last_column = static_cast<int>(std::floor(std::min(used_width_ + beyond, width_ - pose.width)));
-    const double last_inside = used_height_ - pose.height;
-    const int beside = std::max(static_cast<int>(std::floor(used_width_ - pose.width)), 0);
-    for (int row = 0; row <= last_row && cost_of(pose, 0, row) < best.cost; ++row)
-      search_row(pose, number, {row, row <= last_inside ? beside : 0, last_column}, best);
+    const int last_row = static_cast<int>(std::floor(std::min(open_height_ + beyond, height_ - pose.height)));
+    const int last_column = static_cast<int>(std::floor(std::min(open_width_ + beyond, width_ - pose.width)));
+    const double last_inside = open_height_ - pose.height;
+    const int beside = std::max(static_cast<int>(std::floor(open_width_ - pose.width)), 0);
+    for (int row = 0; row <= last_row && cost_of(pose, 0, row) < best.cost; ++row) {
+      const int first = row <= last_inside ? beside : 0;
+      if (cost_of(pose, first, row) < best.cost) search_row(one, {row, first, last_column}, best);
+      checkpoint(operations_a_searched_row);
+    }
   }
 
   // Places from the first column to the last one.
@@ -132,14 +212,13 @@ class Tile {
   };
 
   // Whether one of the places is free.
-  bool search_row(const Pose& pose, int number, const PlacesInRow& places, Candidate& best) {
+  bool search_row(const Searched& one, const PlacesInRow& places, Candidate& best) {
     double looks = 0;
-    const int column = taken_.first_free(pose.footprint, places.row, places.first, places.last, looks);
-    checkpoint(operations_a_searched_row);
+    const int column = taken_.first_free(one.pose->footprint, places.row, places.first, places.last, looks);
     work_ += cost_of_row + cost_of_look * looks;
     if (column < 0) return false;
-    const Cost cost = cost_of(pose, column, places.row);
-    if (cost < best.cost) best = {cost, number, column, places.row};
+    const Cost cost = cost_of(*one.pose, column, places.row);
+    if (cost < best.cost) best = {cost, one.number, column, places.row};
     return true;
   }
 
@@ -163,14 +242,20 @@ class Tile {
     const Box box = outline.box();
     work_ += cost_of_drawn * (box.right - box.left + 2 * options_.gap) * (box.top - box.bottom + 2 * options_.gap);
     taken_.take(outline, options_.gap);
+    const auto row = [&](double at) { return std::clamp(static_cast<int>(at), 0, taken_.rows()); };
+    std::fill(longest_free_.begin() + row(box.bottom - options_.gap),
+              longest_free_.begin() + row(box.top + options_.gap + 2), unknown);
     still_.add(outline);
   }
 
   const double width_, height_;
   const ConstructionOptions& options_;
   TakenTexels taken_;
+  Array<Hole> holes_;
+  Array<int> longest_free_;  // (rows) texels of a row, as far as all reach
   StillOutlines still_;
   double used_width_ = 0, used_height_ = 0;
+  double open_width_ = 0, open_height_ = 0;  // where bodies lie before it grows; at least what is used
   double class_extent_ = std::numeric_limits<double>::infinity();
   double work_ = 0;
   bool has_obstacles_ = false;

@@ -21,8 +21,8 @@ struct Placed {
   Complex at;
 };
 
-// Which place is taken: where the rectangle around bodies grows least, in area and side, the lowest, or the nearest to
-// the corner; or where its side grows least, then its area.
+// Which place is taken: where the rectangle that is open, around bodies or more, grows least, in area and side, the
+// lowest, or the nearest to the corner; or where its side grows least, then its area.
 enum class PlaceRule { lowest, nearest_corner, least_side };
 constexpr int place_rules = 3;
 
@@ -33,6 +33,8 @@ struct ConstructionOptions {
   PlaceRule rule = PlaceRule::lowest;
   // Places that were taken up to a body are not looked at again for those that are hardly smaller.
   bool skips_full_rows = false;
+  // Of each side of a tile: this part of it is open from the first body on.
+  double open_share = 0;
   bool stops_early = false;  // at the first body without a place
 };
 

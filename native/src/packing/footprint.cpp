@@ -39,6 +39,16 @@ TakenTexels::TakenTexels(int rows, int columns)
     // As many columns again are free, so that what reaches beyond the raster need not be told apart.
     : levels_(level_of(columns) + 1, BitRows(rows, 2 * columns + 2 * BitRows::word_bits)) {}
 
+int TakenTexels::longest_free(int row, int end) const {
+  int longest = 0;
+  for (int begin = 0, taken = 0; taken < end; begin = taken) {
+    begin = levels_[0].next(false, row, begin, end);
+    taken = levels_[0].next(true, row, begin, end);
+    longest = std::max(longest, taken - begin);
+  }
+  return longest;
+}
+
 void TakenTexels::take(const Outline& outline, double reach) {
   const Box box = outline.box();
   draw(outline, reach, levels_[0]);

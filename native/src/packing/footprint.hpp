@@ -32,6 +32,9 @@ class TakenTexels {
 
   int rows() const { return levels_[0].rows(); }
 
+  // How many texels of a row in a sequence are free at most, of those before `end`.
+  int longest_free(int row, int end) const;
+
   // Takes what lies less than `reach` from an outline, in texels.
   void take(const Outline& outline, double reach);
 
@@ -50,10 +53,7 @@ class TakenTexels {
       }
       looks += looked;
       if (taken == BitRows::all_ones) continue;
-      while (taken & 1) {
-        taken >>= 1;
-        ++column;
-      }
+      column += first_bit(~taken);
       return column <= last ? column : -1;
     }
     return -1;

@@ -25,12 +25,13 @@ struct Segments {
     }
   }
 
-  AabbTree tree() const {
+  // Boxes are wider than the segments by `reach` on each side.
+  AabbTree tree(double reach) const {
     Array<Box> boxes;
     for (std::size_t s = 0; s < owner.size(); ++s) {
       const auto [left, right] = std::minmax({tail[s].real(), head[s].real()});
       const auto [bottom, top] = std::minmax({tail[s].imag(), head[s].imag()});
-      boxes.push_back({left, right, bottom, top});
+      boxes.push_back({left - reach, right + reach, bottom - reach, top + reach});
     }
     return AabbTree(boxes);
   }
@@ -38,6 +39,11 @@ struct Segments {
 
 bool cross_each_other(Complex a, Complex b, Complex c, Complex d) {
   return cross(b - a, c - a) * cross(b - a, d - a) < 0 && cross(d - c, a - c) * cross(d - c, b - c) < 0;
+}
+
+double distance(Complex a, Complex b, Complex c, Complex d) {
+  return std::min({distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b),
+                   distance_to_segment(d, a, b)});
 }
 
 bool is_inside(Complex point, const Outline& outline) {
@@ -56,7 +62,7 @@ bool is_inside(Complex point, const Outline& outline) {
 std::pair<Index, Index> overlapping_pair(const Array<Outline>& outlines) {
   const Segments all(outlines);
   std::pair<Index, Index> found(-1, -1);
-  all.tree().any_meeting_pair([&](Index i, Index j) {
+  all.tree(0).any_meeting_pair([&](Index i, Index j) {
     if (all.owner[i] == all.owner[j] || !cross_each_other(all.tail[i], all.head[i], all.tail[j], all.head[j]))
       return false;
     found = std::minmax(all.owner[i], all.owner[j]);
@@ -72,6 +78,13 @@ std::pair<Index, Index> overlapping_pair(const Array<Outline>& outlines) {
     return meets;
   });
   return found;
+}
+
+bool keep_gap(const Array<Outline>& outlines, double gap) {
+  const Segments all(outlines);
+  return !all.tree(gap / 2).any_meeting_pair([&](Index i, Index j) {
+    return all.owner[i] != all.owner[j] && distance(all.tail[i], all.head[i], all.tail[j], all.head[j]) < gap;
+  }) && overlapping_pair(outlines).first < 0;
 }
 
 }  // namespace lsgp

@@ -12,13 +12,17 @@
 #include "base/text.hpp"
 #include "lsgp/errors.hpp"
 #include "packing/gaps.hpp"
+#include "plane/convex_hull.hpp"
 
 namespace lsgp {
 
 namespace {
 
-// What of the area the first layout that is tried fills, and by how much its side grows until one is found.
-constexpr double first_fill = 0.65, growth = 1.02, failed_growth = 1.12;
+// What of the side is open from the first body on, if not only what they take.
+constexpr double usual_open_share = 0.95;
+// What of the area the first layout of convex bodies that is tried fills, and by how much its side grows until one is
+// found.
+constexpr double first_fill = 0.7, growth = 1.02, failed_growth = 1.12;
 constexpr double room_to_grow = 1.7;
 constexpr int most_growths = 16;
 // Of the expected side: beyond, margins leave no room, and rasters would get large.
@@ -27,7 +31,7 @@ constexpr double most_growth = 4;
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long better orders are looked for at each effort, and then smaller squares, in about nanoseconds.
-constexpr double work_of_orders[]{4e6, 2e7, 1e9}, work_of_separation[]{8e6, 1.2e8, 9e9};
+constexpr double work_of_orders[]{2e6, 2e7, 1e9}, work_of_separation[]{4e6, 1.2e8, 9e9};
 // Of the seconds that are allowed, for orders.
 constexpr double share_of_orders = 0.1;
 // Of more bodies, overlaps of pairs are not looked at.
@@ -50,15 +54,9 @@ LayoutSearch::LayoutSearch(const Array<Body>& bodies, const PackingOptions& opti
     if (!bodies[b].keeps_place) free_.push_back(static_cast<Index>(b));
   }
   has_area_ |= options.fill || has_obstacles_ || options.tiles > 1;
-  inside_ = options.area.value_or(UvRectangle{});
-  mean_length_ = std::sqrt((inside_.right - inside_.left) * (inside_.top - inside_.bottom));
-  const double snap = options.snap;
-  const double margin = snap > 0 ? std::ceil(options.margin / snap) * snap : options.margin;
-  if (has_area_) {
-    inside_ = {inside_.left + margin, inside_.bottom + margin, inside_.right - margin, inside_.top - margin};
-  } else {
-    inside_ = {margin, margin, margin + 1, margin + 1};
-  }
+  const UvRectangle area = options.area.value_or(UvRectangle{});
+  mean_length_ = std::sqrt((area.right - area.left) * (area.top - area.bottom));
+  inside_ = inside_margins(options, has_area_);
 }
 
 // Whether the side that bodies fill is found by placing them in a tile that is larger than they need.
@@ -73,12 +71,12 @@ double LayoutSearch::gap(double side) const {
   return 2 * options_.margin * scale + 2 * tolerance_ + widened * expected_extent();
 }
 
-double LayoutSearch::estimated_side() const {
+double LayoutSearch::estimated_side(double hull_share) const {
   const double width = inner_width(), height = inner_height();
   double area = 0, around = 0, longest = 0, widest = 0;
   for (const Index b : free_) {
     const Box box = bodies_[b].outline.box();
-    area += bodies_[b].area;
+    area += bodies_[b].area + hull_share * std::max(area_of_hull(bodies_[b].hull) - bodies_[b].area, 0.0);
     around += (box.right - box.left) + (box.top - box.bottom);
     longest = std::max({longest, box.right - box.left, box.top - box.bottom});
     widest = std::max(widest, std::min(box.right - box.left, box.top - box.bottom));
@@ -98,12 +96,6 @@ LayoutSearch::Order LayoutSearch::by_size() const {
   out.pose.assign(bodies_.size(), -1);
   out.bodies = free_;
   if (free_.size() == 1) out.rule = PlaceRule::least_side;
-  Array<double> size(bodies_.size(), 0);
-  for (const Index b : free_) {
-    const Box box = outline_[b].box();
-    size[b] = (box.right - box.left) + (box.top - box.bottom);
-  }
-  std::stable_sort(out.bodies.begin(), out.bodies.end(), [&](Index a, Index b) { return size[a] > size[b]; });
   return out;
 }
 
@@ -146,8 +138,8 @@ LayoutSearch::Attempt LayoutSearch::attempt(const Order& order, double side, dou
   how.on_texels = options_.snap > 0;
   how.rule = order.rule;
   how.stops_early = true;
-  constexpr std::size_t few = 128;
-  how.skips_full_rows = free_.size() > few;
+  how.skips_full_rows = free_.size() > (options_.effort == PackingEffort::quick ? 128 : 2000);
+  how.open_share = order.open_share / (grows() ? room : 1);
   Attempt out;
   out.found = construct(now_.poses, tiles(grows() ? room * side : side), order.bodies, order.pose, how);
   work_ += out.found.work;
@@ -173,14 +165,18 @@ bool LayoutSearch::take_if_better(const Order& order, Attempt attempt) {
   return true;
 }
 
-// The side at which an order may need just that side, if it needed `needed` with margins for another one: about as many
-// gaps lie beside each other as bodies do in rows of equal ones.
+// By how much of a difference of the sides that margins are for the needed sides differ: about as many gaps lie beside
+// each other as bodies do in rows of equal ones.
+double LayoutSearch::share_of_gaps() const {
+  constexpr double most = 0.9;
+  if (!options_.fill) return 0;
+  return std::min(2 * options_.margin * std::sqrt(static_cast<double>(free_.size()) / (inner_width() * inner_height())),
+                  most);
+}
+
+// The side at which an order may need just that side, if it needed `needed` with margins for another one.
 double LayoutSearch::balanced_side(double needed, double with_margins_for) const {
-  constexpr double most_share = 0.9;
-  const double width = inner_width(), height = inner_height();
-  const double share =
-      std::min(2 * options_.margin * std::sqrt(static_cast<double>(free_.size()) / (width * height)), most_share);
-  return (needed - share * with_margins_for) / (1 - share);
+  return (needed - share_of_gaps() * with_margins_for) / (1 - share_of_gaps());
 }
 
 void LayoutSearch::find_first(const Order& order) {
@@ -200,18 +196,29 @@ void LayoutSearch::find_first(const Order& order) {
 
 // The same order in a smaller square.  with_margins_for: the side for which margins have been.
 void LayoutSearch::tighten(double with_margins_for) {
-  if (!options_.fill) return;
+  if (!options_.fill && !grows()) return;
   if (grows()) {
     constexpr int most = 4;
     constexpr double above = 1.003, room = 1.03;
-    const double enough = options_.effort == PackingEffort::quick ? 1.01 : 1.004;
+    const double enough = options_.effort == PackingEffort::quick ? 0.003 : 0.001;
+    // Once more in a square that is open from the first, which is better most of the time.
+    Order order = now_.order;
+    order.open_share = usual_open_share;
     double side = with_margins_for, needed = now_.side;
-    for (int i = 0; i < most && (needed > side || side > enough * needed); ++i) {
-      side = std::min(above * std::max(balanced_side(needed, side), 0.5 * now_.side), now_.side);
-      Attempt found = attempt(now_.order, side, room);
+    const auto is_done = [&] {
+      return !options_.fill || (needed <= side && share_of_gaps() * (side - needed) <= enough * needed);
+    };
+    for (int i = 0; i < most && (i == 0 || !is_done()); ++i) {
+      const double next = std::min(above * std::max(balanced_side(needed, side), 0.5 * now_.side), now_.side);
+      if (i > 0) {
+        if (next == side) return;
+        order = now_.order;
+      }
+      side = next;
+      Attempt found = attempt(order, side, room);
       needed = found.side;
       if (found.found.missing > 0) return;
-      take_if_better(now_.order, std::move(found));
+      take_if_better(order, std::move(found));
     }
     return;
   }
@@ -243,6 +250,7 @@ LayoutSearch::Order LayoutSearch::varied(const Order& order) {
     }
   }
   constexpr int seldom = 16;
+  if (below(seldom) == 0) out.open_share = order.open_share > 0 ? 0 : usual_open_share;
   if (below(seldom) == 0) out.rule = static_cast<PlaceRule>(below(place_rules));
   return out;
 }
@@ -341,9 +349,13 @@ void LayoutSearch::separate(const Budget& budget) {
   }
 }
 
-Array<BodyMotion> LayoutSearch::best() {
+PackedLayout LayoutSearch::best() {
   const auto count = static_cast<double>(free_.size());
-  expected_side_ = estimated_side();
+  // Others fill about half of what concave bodies leave of their hulls; and a little more, so that margins are rarely
+  // too narrow.
+  constexpr double lost_of_hull = 0.4, more = 1.05;
+  expected_side_ = more * estimated_side(lost_of_hull);
+  const double filled_side = estimated_side(0);
   double farthest = 0;
   for (const Body& body : bodies_) farthest = std::max(farthest, std::abs(body.origin));
   constexpr double no_size = 1e-200, last_digit = std::numeric_limits<double>::epsilon();
@@ -351,7 +363,11 @@ Array<BodyMotion> LayoutSearch::best() {
   const bool is_fine = options_.effort != PackingEffort::quick && count <= most_separated;
   const double texels_of_body = is_fine ? 40 : 24, least_texels = is_fine ? 256 : 128;
   constexpr double most_texels = 1024;
-  texels_ = static_cast<int>(std::clamp(texels_of_body * std::sqrt(count / options_.tiles), least_texels, most_texels));
+  // Concave bodies, which take more than their area, get no coarser texels.
+  constexpr double most_coarseness = 2;
+  const double coarseness = std::min(expected_side_ / std::max(filled_side, no_size), most_coarseness);
+  texels_ = static_cast<int>(std::clamp(coarseness * texels_of_body * std::sqrt(count / options_.tiles),
+                                        coarseness * least_texels, most_texels));
   if (expected_extent() <= std::max(texels_ * last_digit * farthest, no_size)) {
     throw Error(Code::wrong_parameter,
                 concat("The square that the islands fill is ",
@@ -374,7 +390,7 @@ Array<BodyMotion> LayoutSearch::best() {
     search();
     if (now_.side > shorter_unaligned * aligned.side) now_ = aligned;
   }
-  return motions();
+  return layout();
 }
 
 // Throws WRONG_PARAMETER where blocks are so small that a raster of them would not fit into memory, or so large that
@@ -421,7 +437,7 @@ bool LayoutSearch::is_hardly_filled() const {
   return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
 }
 
-Array<BodyMotion> LayoutSearch::motions() {
+PackedLayout LayoutSearch::layout() {
   // The last attempt may have been at another side.
   if (sizes_depend_on_side() && now_.rasterized_for != now_.side) rasterize(now_.side);
   Array<BodyMotion> out(bodies_.size());
@@ -435,17 +451,18 @@ Array<BodyMotion> LayoutSearch::motions() {
     moved.push_back(bodies_[b].outline.moved(out[b].factor, out[b].shift));
     all = around(all, moved.back().box());
   }
-  double side = texture_unit(now_.side);
+  double side = texture_unit(now_.side), needed = now_.side;
   Complex low = 0;
   if (grows() && options_.snap == 0) {
     low = {all.left, all.bottom};
-    if (options_.fill) side = std::max((all.right - all.left) / inner_width(), (all.top - all.bottom) / inner_height());
+    needed = std::max((all.right - all.left) / inner_width(), (all.top - all.bottom) / inner_height());
+    if (options_.fill) side = needed;
   }
   for (const Index b : free_) {
     out[b].factor /= side;
     out[b].shift = (out[b].shift - low) / side + Complex(inside_.left, inside_.bottom);
   }
-  return out;
+  return {options_.fill ? side : needed, std::move(out)};
 }
 
 void LayoutSearch::refuse(const Order& order, double side) {
@@ -459,7 +476,7 @@ void LayoutSearch::refuse(const Order& order, double side) {
     space.height = (inner_height() * scale - 2 * tolerance_) / now_.texel;
   }
   const Constructed found = construct(now_.poses, spaces, order.bodies, order.pose, how);
-  std::vector<Index> left_out;
+  Array<Index> left_out;
   Index fitting = 0;
   for (const Index b : free_) {
     const auto& islands = bodies_[b].islands;
@@ -469,11 +486,11 @@ void LayoutSearch::refuse(const Order& order, double side) {
       fitting += static_cast<Index>(islands.size());
   }
   std::sort(left_out.begin(), left_out.end());
-  throw Error(
-      Code::wrong_parameter,
+  const std::string message =
       concat("With a margin of ", rounded(options_.margin * unit_), " only ", fitting, " of ",
              fitting + ssize(left_out), " islands fit into the area; left out are, for instance, ", list(left_out),
-             ". Pass a smaller margin", options_.fill ? "." : ", a larger area or smaller islands."));
+             ". Pass a smaller margin", options_.fill ? "." : ", a larger area or smaller islands.");
+  throw NoRoom{message, std::move(left_out)};
 }
 
 }  // namespace lsgp

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
@@ -14,12 +15,6 @@
 #include "packing/separation.hpp"
 
 namespace lsgp {
-
-// How a body is moved: around its origin it is multiplied, and then shifted, in texture coordinates.
-struct BodyMotion {
-  int tile = -1;
-  Complex factor, shift;
-};
 
 // How long something is looked for: an amount of work, as of `Constructed`, or seconds.
 class Budget {
@@ -41,13 +36,19 @@ class Budget {
   const Clock::time_point begin_ = Clock::now();
 };
 
+// That bodies do not fit, and the islands that are left out of a layout of the others.
+struct NoRoom {
+  std::string message;
+  Array<Index> islands;
+};
+
 class LayoutSearch {
  public:
   // bodies, options: have to live longer. unit: of the lengths of options, for errors.
   LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, double unit, ProgressMonitor& monitor);
 
-  // How to move each body; those that keep their place are left out. Throws WRONG_PARAMETER where no layout is found.
-  Array<BodyMotion> best();
+  // Throws NoRoom, and WRONG_PARAMETER where numbers are too small or blocks too many.
+  PackedLayout best();
 
  private:
   // In which order bodies are placed, and how.
@@ -55,6 +56,7 @@ class LayoutSearch {
     Array<Index> bodies;
     Array<int> pose;  // (bodies) that it has to take, -1: any
     PlaceRule rule = PlaceRule::lowest;
+    double open_share = 0;  // of the side
   };
   struct Attempt {
     Constructed found;
@@ -82,7 +84,7 @@ class LayoutSearch {
   // A length of 1 in texture coordinates, in the unit of bodies.
   double texture_unit(double side) const { return options_.fill ? side : 1.0; }
   double gap(double side) const;
-  double estimated_side() const;
+  double estimated_side(double hull_share) const;
   Order by_size() const;
   void rasterize(double side);
   Array<TileSpace> tiles(double side) const;
@@ -92,6 +94,7 @@ class LayoutSearch {
   bool is_hardly_filled() const;
   void require_enough_blocks() const;
   void find_first(const Order& order);
+  double share_of_gaps() const;
   double balanced_side(double needed, double with_margins_for) const;
   void tighten(double with_margins_for);
   void vary_order(const Budget& budget);
@@ -99,7 +102,7 @@ class LayoutSearch {
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
   int below(int most) { return static_cast<int>(random_() % static_cast<std::uint32_t>(most)); }
-  Array<BodyMotion> motions();
+  PackedLayout layout();
   [[noreturn]] void refuse(const Order& order, double side);
 
   const Array<Body>& bodies_;

@@ -11,18 +11,30 @@
 
 namespace lsgp {
 
+bool is_before(Complex a, Complex b) { return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag(); }
+
+bool is_before(const Array<Complex>& a, const Array<Complex>& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                      [](Complex one, Complex other) { return is_before(one, other); });
+}
+
 namespace {
 
-constexpr double operations_a_corner = 100;
+struct Before {
+  template <typename Points>
+  bool operator()(const Points& a, const Points& b) const {
+    return is_before(a, b);
+  }
+};
 
-bool is_before(Complex a, Complex b) { return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag(); }
+constexpr double operations_a_corner = 100;
 
 // The sides of triangles from corner to corner, all of which are counter-clockwise; those that run against each other
 // cancel.
 class SideChain {
  public:
   explicit SideChain(Array<Complex> places) : places_(std::move(places)) {
-    std::sort(places_.begin(), places_.end(), is_before);
+    std::sort(places_.begin(), places_.end(), Before());
     places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
   }
 
@@ -55,7 +67,7 @@ class SideChain {
   using Side = std::pair<Index, Index>;  // tail and head
 
   Index vertex(Complex place) const {
-    return static_cast<Index>(std::lower_bound(places_.begin(), places_.end(), place, is_before) - places_.begin());
+    return static_cast<Index>(std::lower_bound(places_.begin(), places_.end(), place, Before()) - places_.begin());
   }
 
   // Removes pairs that run against each other, and sorts the others by their tails.
@@ -81,11 +93,12 @@ class SideChain {
   Array<Side> sides_;
 };
 
-double distance_to_segment(Complex point, Complex a, Complex b) {
-  const Complex along = b - a;
-  const double squared = std::norm(along);
-  const double share = squared > 0 ? std::clamp(std::real((point - a) * std::conj(along)) / squared, 0.0, 1.0) : 0.0;
-  return std::abs(point - a - share * along);
+template <typename Point>
+Box box_around(Point begin, Point end) {
+  constexpr double most = std::numeric_limits<double>::infinity();
+  Box out{most, -most, most, -most};
+  for (; begin != end; ++begin) out = around(out, {begin->real(), begin->real(), begin->imag(), begin->imag()});
+  return out;
 }
 
 // Marks the points between two that are kept which have to be kept, too.
@@ -117,15 +130,25 @@ void keep_far_points(const Array<Complex>& polygon, double tolerance, Array<char
 
 }  // namespace
 
+double distance_to_segment(Complex point, Complex a, Complex b) {
+  const Complex along = b - a;
+  const double squared = std::norm(along);
+  const double share = squared > 0 ? std::clamp(std::real((point - a) * std::conj(along)) / squared, 0.0, 1.0) : 0.0;
+  return std::abs(point - a - share * along);
+}
+
 Outline Outline::around_triangles(const Array<Complex>& corners) {
   SideChain chain(corners);
-  Outline out;
+  Array<Array<Complex>> without_area;
   for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
     checkpoint(3 * operations_a_corner);
     const Complex a = corners[t], b = corners[t + 1], c = corners[t + 2];
     if (a == b || b == c || c == a) {
       // Its sides would cancel.
-      out.add_polygon(a == b && b == c ? Array<Complex>{a} : a == b ? Array<Complex>{b, c} : Array<Complex>{a, b});
+      const Complex other = a == b ? c : b;
+      without_area.push_back(a == other ? Array<Complex>{a} : Array<Complex>{a, other});
+      if (is_before(without_area.back().back(), a))
+        std::reverse(without_area.back().begin(), without_area.back().end());
       continue;
     }
     const bool is_mirrored = doubled_area(a, b, c) < 0;
@@ -133,6 +156,9 @@ Outline Outline::around_triangles(const Array<Complex>& corners) {
     chain.add(b, is_mirrored ? a : c);
     chain.add(c, is_mirrored ? b : a);
   }
+  Outline out;
+  std::sort(without_area.begin(), without_area.end(), Before());
+  for (const Array<Complex>& polygon : without_area) out.add_polygon(polygon);
   chain.trace([&](const Array<Complex>& polygon) { out.add_polygon(polygon); });
   return out;
 }
@@ -142,10 +168,18 @@ void Outline::add_polygon(const Array<Complex>& polygon) {
   first_.push_back(static_cast<Index>(points_.size()));
 }
 
-Box Outline::box() const {
-  constexpr double most = std::numeric_limits<double>::infinity();
-  Box out{most, -most, most, -most};
-  for (const Complex z : points_) out = around(out, {z.real(), z.real(), z.imag(), z.imag()});
+Box Outline::box() const { return box_around(points_.begin(), points_.end()); }
+
+// What triangles are around is on the left of their sides, so that holes run clockwise.
+Array<Box> Outline::hole_boxes() const {
+  Array<Box> out;
+  for (std::size_t p = 0; p + 1 < first_.size(); ++p) {
+    const auto begin = points_.begin() + first_[p], end = points_.begin() + first_[p + 1];
+    double doubled = 0;
+    for (auto point = begin; point != end; ++point)
+      doubled += cross(*point - *begin, *(point + 1 == end ? begin : point + 1) - *begin);
+    if (doubled < 0) out.push_back(box_around(begin, end));
+  }
   return out;
 }
 

@@ -8,6 +8,12 @@
 
 namespace lsgp {
 
+// By their coordinates, those along u first.
+bool is_before(Complex a, Complex b);
+bool is_before(const Array<Complex>& a, const Array<Complex>& b);
+
+double distance_to_segment(Complex point, Complex a, Complex b);
+
 // Closed polygons. What they wind around, in either direction, is inside; a polygon of one point or two is that point
 // or that segment.
 class Outline {
@@ -19,6 +25,8 @@ class Outline {
   bool is_empty() const { return points_.empty(); }
   const Array<Complex>& points() const { return points_; }
   Box box() const;
+  // Around each hole in it.
+  Array<Box> hole_boxes() const;
 
   // All points are multiplied, and then shifted.
   Outline moved(Complex factor, Complex shift) const;

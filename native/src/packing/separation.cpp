@@ -24,17 +24,6 @@ int below(std::mt19937& random, int most) {
   return most <= 1 ? 0 : static_cast<int>(random() % static_cast<std::uint32_t>(most));
 }
 
-// Of a word, pairs, fours and bytes of bits added up: what all processors have, and as fast as their instruction if
-// most words are 0.
-int bit_count(BitRows::Word word) {
-  constexpr BitRows::Word twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f,
-                          ones = 0x0101010101010101;
-  if (word == 0) return 0;
-  word -= word >> 1 & twos;
-  word = (word & fours) + (word >> 2 & fours);
-  return static_cast<int>(((word + (word >> 4)) & bytes) * ones >> 56);
-}
-
 }  // namespace
 
 Separation::Separation(const Array<Array<Pose>>& poses, const Array<Index>& bodies, double gap)

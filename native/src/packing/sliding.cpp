@@ -16,16 +16,16 @@ constexpr int most_cells = 256;  // of a side
 
 struct Segment {
   Complex a, b;
+  Box box;
 };
 
 Complex along(Axis axis, Complex z) { return axis == Axis::u ? z : Complex(z.imag(), z.real()); }
 
 Box along(Axis axis, const Box& box) { return axis == Axis::u ? box : Box{box.bottom, box.top, box.left, box.right}; }
 
-Box around_segment(const Segment& s) {
-  const auto [left, right] = std::minmax({s.a.real(), s.b.real()});
-  const auto [bottom, top] = std::minmax({s.a.imag(), s.b.imag()});
-  return {left, right, bottom, top};
+Box around_segment(Complex a, Complex b) {
+  return {std::min(a.real(), b.real()), std::max(a.real(), b.real()), std::min(a.imag(), b.imag()),
+          std::max(a.imag(), b.imag())};
 }
 
 }  // namespace
@@ -92,16 +92,21 @@ double StillOutlines::free_way(const Outline& moving, Axis axis, double gap, dou
       seen_[number] = query_;
       if (!meet(boxes_[number], swept)) continue;
       outlines_[number].for_each_segment([&](Complex a, Complex b) {
-        const Segment segment{along(axis, a), along(axis, b)};
-        if (meet(around_segment(segment), swept_along)) near.push_back(segment);
+        const Complex tail = along(axis, a), head = along(axis, b);
+        const Box box = around_segment(tail, head);
+        if (meet(box, swept_along)) near.push_back({tail, head, box});
       });
     }
   });
   double least = limit;
   moving.for_each_segment([&](Complex a, Complex b) {
     const Complex tail = along(axis, a), head = along(axis, b);
-    const auto [bottom, top] = std::minmax({tail.imag(), head.imag()});
+    const auto [left, right, bottom, top] = around_segment(tail, head);
     for (const Segment& segment : near) {
+      // Beside its way, behind it, or farther than what it meets first.
+      if (segment.box.top + gap < bottom || segment.box.bottom - gap > top || segment.box.left - gap > right ||
+          segment.box.right + gap < left - least)
+        continue;
       least = travel_to_segment(tail, segment.a, segment.b, gap, least);
       // The other way round: a point moved along u is one that is moved against it in the mirror.
       for (const Complex point : {segment.a, segment.b}) {

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from island_kits import KINDS, Kit, gathered, kit
 from other_process import in_another_process
-from packing_checks import Packed, border, least_gap, measured, overlapping, similarities
+from packing_checks import Packed, areas, border, least_gap, measured, overlapping, similarities
 from packing_digest import digest
 from scipy.ndimage import distance_transform_edt
 
@@ -298,8 +298,83 @@ def require_refused(given: Kit, margin: float, names: list[int] | None = None, *
 
 def test_margins_without_room_are_refused_with_how_many_would_fit() -> None:
     """Of two squares one: their corners would be further apart than those of the square without its margin."""
-    refused = require_refused(rectangles([(1.0, 1.0)] * 2), 0.3)
+    given = rectangles([(1.0, 1.0)] * 2)
+    refused = require_refused(given, 0.3)
     assert "1 of 2 islands" in refused.message
+    # What is left out is named by its triangles.
+    assert refused.elements.kind == "triangles"
+    assert len(set(given.island[refused.elements.indices].tolist())) == 1
+    assert np.isin(given.island, given.island[refused.elements.indices]).sum() == len(refused.elements.indices)
+
+
+WAYS = (
+    *({}, {"fill": False}, {"turned": "quarters"}, {"turned": False}, {"udim": 3}, {"snap": 1 / 256}),
+    *({"area": (-3.0, 2.0, 5.0, 3.0)}, {"locks": {"place": [0]}}, {"locks": {"scale": [2]}}, {"groups": [0, 0, 1, 1]}),
+)
+
+
+def given_for(kind: str, how: dict[str, object]) -> Kit:
+    """Small, so that what is locked fits."""
+    return Kit(islands(kind).corner_uv * (0.02 if "locks" in how else 1.0), islands(kind).island)
+
+
+def arguments(kind: str, how: dict[str, object]) -> dict[str, object]:
+    alone = [-1] * (COUNTS[kind] - 4)
+    return how | {"groups": [*how["groups"], *alone]} if "groups" in how else how
+
+
+@each_kind
+@pytest.mark.parametrize("how", WAYS, ids=str)
+def test_a_packed_layout_is_not_packed_worse(kind: str, how: dict[str, object]) -> None:
+    """What is given is one of the layouts that are compared; and it keeps what every layout keeps."""
+    given, how = given_for(kind, how), arguments(kind, how)
+    margin = 0.004 * (float(np.ptp(given.corner_uv)) if how.get("fill") is False else 1.0)
+    once = lsgp.pack_islands(*given, margin, effort="quick", **how)
+    again = lsgp.pack_islands(once, given.island, margin, effort="quick", **how)
+    if how.get("fill") is False:
+        assert again.max() <= once.max() * (1 + ROUNDING)
+    else:
+        assert areas(again).sum() >= areas(once).sum() * (1 - ROUNDING)
+    if "groups" not in how:
+        require_room(given, again, margin)
+
+
+def test_layouts_of_more_effort_are_given_to_less() -> None:
+    for kind in ("convex", "concave"):
+        good = packed(kind, effort="good")
+        again = lsgp.pack_islands(0.3 * good + 2, islands(kind).island, MARGIN, effort="quick")
+        assert areas(again).sum() >= areas(good).sum() * (1 - ROUNDING)
+
+
+@each_kind
+@pytest.mark.parametrize("how", WAYS, ids=str)
+def test_numbers_of_islands_triangles_and_corners_do_not_matter(kind: str, how: dict[str, object]) -> None:
+    """To the byte, as none of these islands are equal."""
+    given, how = given_for(kind, how), arguments(kind, how)
+    random = np.random.RandomState(1)
+    triangles, number = random.permutation(len(given.island)), random.permutation(COUNTS[kind])
+    first = random.randint(3, size=(len(given.island), 1))
+    corners = (first + np.arange(3)) % 3
+
+    def renumbered(uv: np.ndarray) -> np.ndarray:
+        return np.take_along_axis(uv[triangles], corners[:, :, None], axis=1)
+
+    of_numbers = dict(how)
+    if "groups" in how:
+        of_numbers["groups"] = np.array(how["groups"])[np.argsort(number)]
+    if "locks" in how:
+        of_numbers["locks"] = {what: number[kept].tolist() for what, kept in how["locks"].items()}
+    expected = lsgp.pack_islands(*given, MARGIN, effort="quick", **how)
+    renamed = number[given.island][triangles].astype(np.int32)
+    found = lsgp.pack_islands(renumbered(given.corner_uv), renamed, MARGIN, effort="quick", **of_numbers)
+    assert np.array_equal(found, renumbered(expected))
+
+
+@each_kind
+def test_more_effort_is_never_worse(kind: str) -> None:
+    for margin in (0.0, MARGIN):
+        quick, good = (areas(packed(kind, margin, effort=effort)).sum() for effort in EFFORTS)
+        assert good >= quick * (1 - ROUNDING)
 
 
 def test_what_cannot_be_packed_is_named() -> None:

@@ -172,7 +172,11 @@ def test_long_strips_lie_along_the_diagonal(count: int, length: float) -> None:
     factor = moves(uv * [length, 1], packed, island)[0, 0]
     assert quarter_turned(factor) == (length < 2)
     if length > 2:
-        assert abs(factor.real) == pytest.approx(abs(factor.imag), rel=0.05)
+        # Exactly so, beside each other; or nearly so in a way that covers more, as in steps.
+        gap = 2 * 4 / 1024
+        scale = ((1 - gap) * math.sqrt(2) - (count - 1) * gap) / ((length + count) * 0.1)
+        covers_more = coverage(packed, island) > scale**2 * length * count * 0.01
+        assert abs(factor.real) == pytest.approx(abs(factor.imag), rel=0.25 if covers_more else 0.05)
         # The square around strips on top of each other, with room for their margins.
         side = (length + 1.2 * count) * 0.1 / math.sqrt(2)
         assert coverage(packed, island) > 0.9 * length * count * 0.01 / side**2

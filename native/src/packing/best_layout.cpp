@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "packing/best_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "packing/gaps.hpp"
+#include "packing/layout_search.hpp"
+#include "plane/aabb_tree.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int tiles_in_row = 10;
+// Of the side: what coordinates that have been packed and stored may be off.
+constexpr double rounding = 1e-12;
+
+// Whether bodies lie on blocks of which each belongs to one, as far as this can be told.
+bool are_on_blocks(const Array<Body>& bodies, const UvRectangle& inside, double snap) {
+  constexpr double nearly = 1e-9;  // of a block
+  Array<std::pair<int, int>> taken;
+  for (const Body& body : bodies) {
+    if (body.keeps_place) return false;
+    const Complex at = (body.origin - Complex(inside.left, inside.bottom)) / snap;
+    const int column = static_cast<int>(std::lround(at.real())), row = static_cast<int>(std::lround(at.imag()));
+    if (std::abs(at - Complex(column, row)) > nearly) return false;
+    const Footprint footprint(body.outline.moved(1 / snap, 0));
+    for (const Span& span : footprint.spans()) {
+      for (int x = span.begin; x < span.end; ++x) taken.emplace_back(row + span.row, column + x);
+    }
+  }
+  std::sort(taken.begin(), taken.end());
+  return std::adjacent_find(taken.begin(), taken.end()) == taken.end();
+}
+
+// The layout as it is given.
+class Given {
+ public:
+  Given(const Array<Body>& bodies, const PackingOptions& options) : bodies_(bodies), options_(options) {
+    bool has_obstacles = false, has_own_scales = false;
+    for (const Body& body : bodies) {
+      has_obstacles |= body.keeps_place;
+      has_own_scales |= body.keeps_scale && !body.keeps_place;
+    }
+    is_fixed_ = has_obstacles || options.snap > 0 || (options.fill && has_own_scales);
+    inside_ = inside_margins(options, options.fill || has_obstacles || options.tiles > 1 || options.area.has_value());
+    for (const Body& body : bodies) {
+      const Outline outline = body.outline.moved(1, body.origin);
+      tile_.push_back(body.keeps_place ? 0 : tile_of(outline.box()));
+      if (tile_.back() < 0) return;
+      outlines_.push_back(outline);
+    }
+    find_boxes();
+    find_side();
+  }
+
+  // Without margins between bodies, by how much it has to be scaled down; 0: it is none.
+  double side() const { return side_; }
+
+  bool keeps_margins() const {
+    for (int tile = 0; tile < options_.tiles; ++tile) {
+      Array<Outline> in_tile;
+      Outline obstacles;
+      for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        if (bodies_[b].keeps_place && tile == 0) obstacles.append(outlines_[b]);
+        if (!bodies_[b].keeps_place && tile_[b] == tile) in_tile.push_back(outlines_[b]);
+      }
+      in_tile.push_back(std::move(obstacles));
+      if (!keep_gap(in_tile, 2 * options_.margin * unit())) return false;
+    }
+    return options_.snap == 0 || are_on_blocks(bodies_, inside_, options_.snap);
+  }
+
+  PackedLayout layout() const {
+    PackedLayout out;
+    out.side = side_;
+    out.motions.resize(bodies_.size());
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b].keeps_place) continue;
+      const Box& box = boxes_[tile_[b]];
+      const Complex low(box.left, box.bottom), corner(inside_.left, inside_.bottom);
+      const Complex shift =
+          is_fixed_ ? bodies_[b].origin - corner_of(tile_[b]) : (bodies_[b].origin - low) / unit() + corner;
+      out.motions[b] = {tile_[b], 1 / unit(), shift};
+    }
+    return out;
+  }
+
+ private:
+  static Complex corner_of(int tile) { return Complex(tile % tiles_in_row, tile / tiles_in_row); }
+
+  double unit() const { return options_.fill ? side_ : 1.0; }
+
+  // -1: it is in none.
+  int tile_of(const Box& box) const {
+    if (options_.tiles == 1) return 0;
+    const double column = std::floor((box.left + box.right) / 2), row = std::floor((box.bottom + box.top) / 2);
+    if (!(column >= 0 && column < tiles_in_row && row >= 0 && column + tiles_in_row * row < options_.tiles)) return -1;
+    return static_cast<int>(column + tiles_in_row * row);
+  }
+
+  void find_boxes() {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    boxes_.assign(options_.tiles, Box{most, -most, most, -most});
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (!bodies_[b].keeps_place) boxes_[tile_[b]] = around(boxes_[tile_[b]], outlines_[b].box());
+    }
+  }
+
+  void find_side() {
+    double side = is_fixed_ ? 1 : 0;
+    for (int tile = 0; tile < options_.tiles; ++tile) {
+      const Box& box = boxes_[tile];
+      if (box.left > box.right) continue;
+      const Complex low = Complex(inside_.left, inside_.bottom) + corner_of(tile);
+      const Complex high = Complex(inside_.right, inside_.top) + corner_of(tile);
+      if (!is_fixed_) {
+        side = std::max({side, (box.right - box.left) / (inside_.right - inside_.left),
+                         (box.top - box.bottom) / (inside_.top - inside_.bottom)});
+      } else if (box.left < low.real() - rounding || box.bottom < low.imag() - rounding ||
+                 box.right > high.real() + rounding || box.top > high.imag() + rounding) {
+        return;
+      }
+    }
+    if (options_.fill || !options_.area || side <= 1) side_ = side;
+  }
+
+  const Array<Body>& bodies_;
+  const PackingOptions& options_;
+  UvRectangle inside_;
+  bool is_fixed_ = false;    // nothing can be scaled
+  Array<Outline> outlines_;  // (bodies) where they lie
+  Array<int> tile_;          // (bodies)
+  Array<Box> boxes_;         // (tiles) around bodies
+  double side_ = 0;
+};
+
+}  // namespace
+
+PackedLayout best_layout(const Array<Body>& bodies, const PackingOptions& options, double unit,
+                         ProgressMonitor& monitor) {
+  constexpr double share_of_less = 0.03;  // of the time
+  PackedLayout best;
+  std::optional<NoRoom> refused;
+  const auto search = [&](PackingEffort effort, double begin, double end) {
+    const ProgressMonitor::Interval part(monitor, begin, end);
+    PackingOptions how = options;
+    how.effort = effort;
+    if (effort != PackingEffort::best) how.seconds.reset();
+    try {
+      PackedLayout found = LayoutSearch(bodies, how, unit, monitor).best();
+      if (best.motions.empty() || found.side < best.side) best = std::move(found);
+    } catch (NoRoom& error) {
+      refused = std::move(error);
+    }
+  };
+  const bool is_quick = options.effort == PackingEffort::quick;
+  search(PackingEffort::quick, 0, is_quick ? 1 : share_of_less);
+  if (!is_quick) {
+    const bool with_good = options.effort == PackingEffort::best && !options.seconds;
+    if (with_good) search(PackingEffort::good, share_of_less, 2 * share_of_less);
+    search(options.effort, (with_good ? 2 : 1) * share_of_less, 1);
+  }
+  const Given given(bodies, options);
+  const bool is_better = best.motions.empty() || given.side() < best.side;
+  if (given.side() > 0 && is_better && given.keeps_margins()) return given.layout();
+  if (best.motions.empty()) throw *refused;
+  return best;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The best layout of those that are known: of the one that is given, and of what is found at each effort.
+#pragma once
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "packing/body.hpp"
+
+namespace lsgp {
+
+// No worse than the given one, scaled as far as it goes, if bodies keep their margins there, nor than that of `quick`.
+// unit: as of LayoutSearch. Throws as its `best`.
+PackedLayout best_layout(const Array<Body>& bodies, const PackingOptions& options, double unit,
+                         ProgressMonitor& monitor);
+
+}  // namespace lsgp
