@@ -54,6 +54,7 @@ class Given {
       if (tile_.back() < 0) return;
       outlines_.push_back(outline);
     }
+    if (!is_fixed_) leave_out_empty_tiles();
     find_boxes();
     find_side();
   }
@@ -101,6 +102,14 @@ class Given {
     const double column = std::floor((box.left + box.right) / 2), row = std::floor((box.bottom + box.top) / 2);
     if (!(column >= 0 && column < tiles_in_row && row >= 0 && column + tiles_in_row * row < options_.tiles)) return -1;
     return static_cast<int>(column + tiles_in_row * row);
+  }
+
+  void leave_out_empty_tiles() {
+    Array<int> number(options_.tiles, 0);
+    for (const int tile : tile_) number[tile] = 1;
+    int count = 0;
+    for (int& used : number) used = used > 0 ? count++ : -1;
+    for (int& tile : tile_) tile = number[tile];
   }
 
   void find_boxes() {
