@@ -14,7 +14,8 @@ namespace lsgp {
 
 enum class IslandTurns { none, quarters, any };
 
-// How long better layouts are looked for. The same effort gives the same layout on every machine.
+// How long better layouts are looked for; none is worse than that which is given, or than with less effort. The same
+// effort gives the same layout on every machine.
 enum class PackingEffort { quick, good, best };
 
 // What an island keeps.

@@ -54,13 +54,14 @@ class Packing:
         margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side; None: `DEFAULT_MARGIN`
         before the layout gets a texel density, which scales it too. udim: over how many UDIM tiles a tight layout is
         spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
-        reflected ones as well; None: none do.
+        reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
     """
 
     pack: Pack | None = None
     margin: float | None = None
     udim: int | None = None
     stack: Stack | None = None
+    effort: Effort | None = None
 
     def __post_init__(self) -> None:
         """Raises InputError: WRONG_PARAMETER."""
@@ -78,6 +79,10 @@ class Packing:
             arguments.require_choice("stack", self.stack, get_args(Stack))
             if self.pack == SHELVES:
                 arguments.refuse("stack", self.stack, 'pass it with pack="tight", or leave it out')
+        if self.effort is not None:
+            arguments.require_choice("effort", self.effort, get_args(Effort))
+            if self.pack == SHELVES:
+                arguments.refuse("effort", self.effort, 'pass it with pack="tight", or leave it out')
 
     @property
     def is_tight(self) -> bool:
@@ -105,7 +110,8 @@ def pack_islands(
 
     Every island is moved as a whole: by a turn, a translation, and a common scale, so that texel density is preserved,
     and both sides of a cut stay related by one rotation and one translation. Islands are put into bays and holes of
-    others, and never mirrored.
+    others, and never mirrored. The layout as it is given is one of those that are compared, so that packing again never
+    makes islands smaller; numbers of islands, triangles and corners do not matter.
 
     corner_uv: (m, 3, 2). island: (m,), -1 for none; such triangles do not move.
     margin: around each island and inside the border, in texture coordinates, so that the gap between two is twice as
@@ -118,8 +124,9 @@ def pack_islands(
         fewer are used if more do not make islands larger. Each island lies inside one tile, with its margin. Only with
         `fill` and without an area.
     effort: "quick": the first layout, in a hundredth of a second for a hundred islands; "good": the best of some
-        hundreds; "best": of many more, for minutes. The same effort gives the same layout on every machine.
-    seconds: of "best": how long it goes on. The layout then hangs on the machine.
+        hundreds; "best": of many more, for minutes. The same effort gives the same layout on every machine, more effort
+        none that is worse.
+    seconds: of "best": how long it goes on. The layout then hangs on the machine, and is no worse than the first one.
     area: (left, bottom, right, top), the rectangle that islands are packed into. None: the unit square; without `fill`
         and islands that keep their place, the smallest square that begins at the origin.
     groups: (islands,) numbers of groups, whose islands keep their places relative to each other; -1: alone.
@@ -237,18 +244,20 @@ def laid_out(
     none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
         return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)
-    turned = turns_of(result)
+    how: dict[str, Any] = {"turned": turns_of(result)}
+    if packing.effort is not None:
+        how["effort"] = packing.effort
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)
-        packed, stacked = _packed(scaled, packing.stack, packing.margin, fill=False, turned=turned, progress=progress)
+        packed, stacked = _packed(scaled, packing.stack, packing.margin, fill=False, **how, progress=progress)
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
     margin = DEFAULT_MARGIN if packing.margin is None else packing.margin
     pack: Pack = "tight"
     try:
-        packed, stacked = _packed(result, packing.stack, margin, turned=turned, udim=packing.udim, progress=progress)
+        packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)
     except InputError:
         if packing.pack == "tight" or packing.udim is not None or packing.stack is not None:
             raise

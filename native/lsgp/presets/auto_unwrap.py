@@ -16,7 +16,7 @@ from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress, share_of, tell
 from ..errors import InputError, SolverError
-from ..layouts.packing import Pack, Packing, Stack, laid_out
+from ..layouts.packing import Effort, Pack, Packing, Stack, laid_out
 from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, with_tiny_findings
 from ..options import Options, Seamless
 from ..results import Result
@@ -91,6 +91,7 @@ def auto_unwrap(
     margin: float | None = None,
     udim: int | None = None,
     stack: Stack | None = None,
+    effort: Effort | None = None,
     texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -125,6 +126,7 @@ def auto_unwrap(
         `Options.square_share`; not with texels, which have their own.
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
+    effort: of packing a tight layout, as of `pack_islands`; None: "good".
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
         those of the placement, and ISLANDS_TINY names islands that do not keep their shape in single precision.
@@ -150,7 +152,7 @@ def auto_unwrap(
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
         if chosen.seamless is not None:
             refuse_of_seamless()
-    packing = Packing(pack, margin, udim, stack)
+    packing = Packing(pack, margin, udim, stack, effort)
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
@@ -191,6 +193,8 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
             arguments.refuse("udim", packing.udim, f"leave it out, since this layout is {why}")
         if is_so and packing.stack is not None:
             arguments.refuse("stack", packing.stack, f"leave it out, since this layout is {why}")
+        if is_so and packing.effort is not None:
+            arguments.refuse("effort", packing.effort, f"leave it out, since this layout is {why}")
     if texels is not None and packing.udim is not None:
         arguments.refuse("udim", packing.udim, "leave it out and pass that of texels, whose density says the size")
     return packing.is_tight and not any(fixed.values())

@@ -18,7 +18,7 @@ from ..api import cut_costs
 from ..base.arguments import FloatArray, IndexArray
 from ..errors import InputError
 from ..io.side_files import CutCostFile, UsageError, load_cut_costs
-from ..layouts.packing import SHELVES, Pack, Packing, Stack
+from ..layouts.packing import SHELVES, Effort, Pack, Packing, Stack
 from ..layouts.texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 from ..options import (
     BorderMode,
@@ -441,6 +441,12 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         help="in tight layouts, lay islands of one shape on each other, so that they share their texels: same ones, or "
         "mirrored ones as well (default: none)",
     )
+    unwrap.add_argument(
+        "--effort",
+        choices=get_args(Effort),
+        help="of packing tight layouts: the first one that is found, the best of some hundreds, or of many more, for "
+        "minutes (default: good)",
+    )
 
 
 def texture_size_option(text: str) -> int:
@@ -544,15 +550,19 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
     Raises UsageError where options do not fit.
     """
     if _is_seamless(args):
-        for name in ("pack", "udim", "stack"):
+        for name in ("pack", "udim", "stack", "effort"):
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
         return None
-    if args.stack is not None and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
-        raise UsageError("--stack is for tight layouts; add --pack tight")
+    for name in ("stack", "effort"):
+        is_given = getattr(args, name) is not None
+        if is_given and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
+            raise UsageError(f"--{name} is for tight layouts; add --pack tight")
+        if is_given and args.udim is not None and args.texel_density is not None:
+            raise UsageError(
+                f"--{name} is for islands that are not in rows; leave it out, or --texel-density or --udim"
+            )
     if args.udim is not None and args.texel_density is not None:
-        if args.stack is not None:
-            raise UsageError("--stack is for islands that are not in rows; leave it out, or --texel-density or --udim")
         if args.pack is not None:
             raise UsageError("--pack is for islands that are not in rows; leave it out, or --texel-density or --udim")
         return None
@@ -567,7 +577,7 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
         raise UsageError(
             f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
         )
-    return Packing(args.pack, margin, args.udim, args.stack)
+    return Packing(args.pack, margin, args.udim, args.stack, args.effort)
 
 
 def library_options(args: argparse.Namespace) -> Options:

@@ -111,7 +111,7 @@ void LayoutSearch::rasterize(double side) {
   for (const Index b : free_) {
     const double scale = options_.fill && bodies_[b].keeps_scale ? side : 1.0;
     now_.poses[b] =
-        poses_of(outline_[b], turns_of(bodies_[b], directions_, also_along_axes_), scale / now_.texel, room);
+        poses_of(outline_[b], turns_[b], scale / now_.texel, room);
   }
 }
 
@@ -382,12 +382,11 @@ PackedLayout LayoutSearch::best() {
   constexpr double few = 8, some = 64;
   directions_ = count <= few ? 16 : count <= some ? 4 : 0;
   if (options_.effort == PackingEffort::quick) directions_ = count <= few ? 8 : 0;
-  search();
+  search(false);
   if (is_hardly_filled()) {
     const State aligned = std::move(now_);
     now_ = {};
-    also_along_axes_ = true;
-    search();
+    search(true);
     if (now_.side > shorter_unaligned * aligned.side) now_ = aligned;
   }
   return layout();
@@ -406,7 +405,10 @@ void LayoutSearch::require_enough_blocks() const {
                      "; pass the side of blocks of which it has one, and at most ", most_blocks, " on a side."));
 }
 
-void LayoutSearch::search() {
+// also_along_axes: bodies that lie along the axes may be turned otherwise, too.
+void LayoutSearch::search(bool also_along_axes) {
+  turns_.clear();
+  for (const Body& body : bodies_) turns_.push_back(turns_of(body, directions_, also_along_axes));
   find_first(by_size());
   for (const Index b : free_) now_.order.pose[b] = now_.found.placed[b].pose;
   const auto effort = static_cast<std::size_t>(options_.effort);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <optional>
 #include <random>
 #include <string>
@@ -90,7 +89,7 @@ class LayoutSearch {
   Array<TileSpace> tiles(double side) const;
   Attempt attempt(const Order& order, double side, double room = 1);
   bool take_if_better(const Order& order, Attempt attempt);
-  void search();
+  void search(bool also_along_axes);
   bool is_hardly_filled() const;
   void require_enough_blocks() const;
   void find_first(const Order& order);
@@ -101,7 +100,7 @@ class LayoutSearch {
   void separate(const Budget& budget);
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
-  int below(int most) { return static_cast<int>(random_() % static_cast<std::uint32_t>(most)); }
+  int below(int most) { return lsgp::below(random_, most); }
   PackedLayout layout();
   [[noreturn]] void refuse(const Order& order, double side);
 
@@ -117,9 +116,9 @@ class LayoutSearch {
 
   double tolerance_ = 0;    // of the outlines
   Array<Outline> outline_;  // (bodies) simplified
+  Array<Array<Complex>> turns_;
   double expected_side_ = 0;
   int directions_ = 0;
-  bool also_along_axes_ = false;
   int texels_ = 0;  // of the expected side
 
   State now_;

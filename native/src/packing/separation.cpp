@@ -20,11 +20,11 @@ constexpr double most_growth_of_weight = 2, least_growth_of_weight = 1.2, decay 
 // Nanoseconds of a pair of rows, and of a pair of bodies.
 constexpr double cost_of_row_pair = 4, cost_of_body_pair = 3;
 
+}  // namespace
+
 int below(std::mt19937& random, int most) {
   return most <= 1 ? 0 : static_cast<int>(random() % static_cast<std::uint32_t>(most));
 }
-
-}  // namespace
 
 Separation::Separation(const Array<Array<Pose>>& poses, const Array<Index>& bodies, double gap)
     : poses_(poses), bodies_(bodies), gap_(gap), reach_(static_cast<int>(std::ceil(gap))), texels_(poses.size()) {

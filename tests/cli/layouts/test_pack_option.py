@@ -172,8 +172,21 @@ def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, few_tries) -> 
         area = abs(np.linalg.det(uv[:2, 1:] - uv[:2, :1])).sum() / 2
         assert report["packing"]["coverage"] == pytest.approx((3 - count) * area, rel=1e-4)
     for options in (("--pack", "shelves"), ("--overlaps", "split"), ("--preset", "tile")):
-        refused = lsgp(*UNWRAP, *options, "--stack", "same")
-        assert refused.code == 2 and "--stack is for" in refused.err
+        for option, value in (("--stack", "same"), ("--effort", "quick")):
+            refused = lsgp(*UNWRAP, *options, option, value)
+            assert refused.code == 2 and f"{option} is for" in refused.err
+
+
+def test_the_effort_is_that_of_the_packer(lsgp, parts: Path) -> None:
+    """Two layouts of the same islands: more effort covers no less."""
+    covered = {}
+    for effort in ("quick", "good"):
+        report = lsgp(*BAKE, "--effort", effort).report()
+        _, uv, island = layout(parts / "out.obj")
+        covered[effort] = report["packing"]["coverage"]
+        assert covered[effort] == pytest.approx(coverage(uv, island), rel=1e-4)
+    assert covered["good"] >= covered["quick"]
+    assert lsgp(*BAKE).report()["packing"]["coverage"] == covered["good"]
 
 
 def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, few_tries) -> None:
