@@ -37,7 +37,8 @@ struct Cost {
 
 struct Candidate {
   Cost cost;
-  int pose = -1, column = 0, row = 0;
+  int pose = -1;
+  Complex at;
 };
 
 class Tile {
@@ -81,7 +82,7 @@ class Tile {
     }
     if (best.pose < 0) return std::nullopt;
     const Pose& pose = poses[best.pose];
-    const Complex at = slid(pose, Complex(best.column, best.row));
+    const Complex at = slid(pose, best.at);
     keep(pose.outline.moved(1, at));
     for (const Box& hole : pose.holes)
       keep_hole({hole.left + at.real(), hole.right + at.real(), hole.bottom + at.imag(), hole.top + at.imag()});
@@ -151,8 +152,25 @@ class Tile {
           if (first_column <= last_column && search_row(one, {row, first_column, last_column}, best)) break;
         }
       }
+      if (best.pose < 0 && !options_.on_texels) search_middle(searched, hole.box, best);
       if (best.pose < 0) hole.full_for = size;
       checkpoint(operations_a_searched_row * (hole.box.top - hole.box.bottom));
+    }
+  }
+
+  // In the middle of a hole, exactly, where texels are too coarse for what hardly fits.
+  void search_middle(const Array<Searched>& searched, const Box& hole, Candidate& best) {
+    const Complex middle((hole.left + hole.right) / 2, (hole.bottom + hole.top) / 2);
+    for (const Searched& one : searched) {
+      const double width = one.pose->width, height = one.pose->height, gaps = 2 * options_.gap;
+      if (width + gaps > hole.right - hole.left || height + gaps > hole.top - hole.bottom) continue;
+      const Complex at = middle - Complex(width, height) / 2.0;
+      double looks = 0;
+      const bool is_free = still_.has_room(one.pose->outline.moved(1, at), options_.gap, looks);
+      work_ += cost_of_pair * looks;
+      if (!is_free) continue;
+      best = {{}, one.number, at};
+      return;
     }
   }
 
@@ -218,7 +236,7 @@ class Tile {
     work_ += cost_of_row + cost_of_look * looks;
     if (column < 0) return false;
     const Cost cost = cost_of(*one.pose, column, places.row);
-    if (cost < best.cost) best = {cost, one.number, column, places.row};
+    if (cost < best.cost) best = {cost, one.number, Complex(column, places.row)};
     return true;
   }
 

@@ -87,4 +87,20 @@ bool keep_gap(const Array<Outline>& outlines, double gap) {
   }) && overlapping_pair(outlines).first < 0;
 }
 
+bool are_apart(const Outline& one, const Outline& other, double gap) {
+  bool is_near = false;
+  one.for_each_segment([&](Complex a, Complex b) {
+    const auto [left, right] = std::minmax({a.real(), b.real()});
+    const auto [bottom, top] = std::minmax({a.imag(), b.imag()});
+    other.for_each_segment([&](Complex c, Complex d) {
+      const bool is_beyond = std::max(c.real(), d.real()) < left - gap || std::min(c.real(), d.real()) > right + gap ||
+                             std::max(c.imag(), d.imag()) < bottom - gap || std::min(c.imag(), d.imag()) > top + gap;
+      if (is_near || is_beyond) return;
+      is_near = cross_each_other(a, b, c, d) || distance(a, b, c, d) < gap;
+    });
+  });
+  return !is_near && (one.is_empty() || !is_inside(one.points()[0], other)) &&
+         (other.is_empty() || !is_inside(other.points()[0], one));
+}
+
 }  // namespace lsgp

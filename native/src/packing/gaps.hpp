@@ -13,4 +13,7 @@ std::pair<Index, Index> overlapping_pair(const Array<Outline>& outlines);
 // Whether none of them meets another one, or lies in it, or is nearer to it than the gap.
 bool keep_gap(const Array<Outline>& outlines, double gap);
 
+// The same of two, without a tree.
+bool are_apart(const Outline& one, const Outline& other, double gap);
+
 }  // namespace lsgp

@@ -110,8 +110,7 @@ void LayoutSearch::rasterize(double side) {
   now_.poses.assign(bodies_.size(), {});
   for (const Index b : free_) {
     const double scale = options_.fill && bodies_[b].keeps_scale ? side : 1.0;
-    now_.poses[b] =
-        poses_of(outline_[b], turns_[b], scale / now_.texel, room);
+    now_.poses[b] = poses_of(outline_[b], turns_[b], scale / now_.texel, room);
   }
 }
 

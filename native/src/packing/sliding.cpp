@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "packing/gaps.hpp"
 
 namespace lsgp {
 
@@ -77,6 +78,25 @@ void StillOutlines::add(Outline outline) {
   for_each_cell(boxes_.back(), [&](int cell) { in_cell_[cell].push_back(number); });
   outlines_.push_back(std::move(outline));
   seen_.push_back(-1);
+}
+
+bool StillOutlines::has_room(const Outline& outline, double gap, double& looks) const {
+  Box around_it = outline.box();
+  around_it = {around_it.left - gap, around_it.right + gap, around_it.bottom - gap, around_it.top + gap};
+  bool is_free = true;
+  ++query_;
+  for_each_cell(around_it, [&](int cell) {
+    for (const Index number : in_cell_[cell]) {
+      if (!is_free || seen_[number] == query_) continue;
+      seen_[number] = query_;
+      if (!meet(boxes_[number], around_it)) continue;
+      const double pairs = static_cast<double>(outline.points().size() * outlines_[number].points().size());
+      looks += pairs;
+      checkpoint(operations_a_pair * pairs);
+      is_free = are_apart(outline, outlines_[number], gap);
+    }
+  });
+  return is_free;
 }
 
 double StillOutlines::free_way(const Outline& moving, Axis axis, double gap, double limit, double& looks) const {

@@ -21,8 +21,11 @@ class StillOutlines {
 
   void add(Outline outline);
 
-  // How far an outline can be moved against an axis so that it keeps a gap to all others; at most `limit`.
+  // Whether an outline keeps a gap to all others.
   // looks: counts the pairs of segments that are looked at.
+  bool has_room(const Outline& outline, double gap, double& looks) const;
+
+  // How far an outline can be moved against an axis so that it keeps a gap to all others; at most `limit`.
   double free_way(const Outline& moving, Axis axis, double gap, double limit, double& looks) const;
 
  private:
