@@ -61,6 +61,10 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lambda cones, angles, progress: lsgp.Solver(WHOLE).place_cones(cones, angles, progress=progress, count=4),
         {"cones": (), "angles": None, "progress": None},
     ),
+    "Weights": (
+        lsgp.Weights,
+        {"islands": 0.4, "cuts": 0.3, "borders": 0.3, "cones": 0.1, "square": 1.2, "symmetry": 1.0},
+    ),
     "TexelLayout": (lsgp.TexelLayout, {"density": 100.0, "texture_size": 1024, "udim": 4, "margin": 4.0}),
     "CutMover": (lsgp.CutMover, {"surface": WHOLE}),
     "CutMover.grab": (
@@ -80,11 +84,12 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"surface": surface(BOX), "cones": BOX.cones[:2], "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "target": 1.05, "symmetric": True, "creases": True, "sharp": BOX.triangles[:3, :2]},
             "pins": None,
-            **{"pack": "shelves", "margin": None, "udim": None, "stack": None},
-            **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
+            **{"pack": "shelves", "margin": None, "udim": None, "stack": None, "effort": "good"},
+            **{"texels": lsgp.TexelLayout(100.0, 1024), "weights": lsgp.Weights(islands=0.1), "progress": None},
         },
     ),
     "preset_options": (lsgp.preset_options, {"preset": "bake"}),
+    "preset_weights": (lsgp.preset_weights, {"preset": "bake"}),
     "find_cuts": (lsgp.find_cuts, {name: CALL[name] for name in CALL if name != "angles"}),
     "crease_borders": (
         lsgp.crease_borders,
@@ -210,7 +215,17 @@ FILES = {"read_mesh_file", "write_mesh_file", "write_png", "MeshFile.surface", "
 # Errors, and what the library makes for callers to read.
 NOT_CALLED = {
     *("Cancelled", "CurvatureError", "Elements", "Finding", "InputError", "LsgpError", "SolverError", "TopologyError"),
-    *("ConeGains", "CutPaths", "Distortion", "FeatureReport", "GrabbedCut", "LedgerPart", "Measurement", "MeshFile"),
+    *(
+        "Choice",
+        "ConeGains",
+        "CutPaths",
+        "Distortion",
+        "FeatureReport",
+        "GrabbedCut",
+        "LedgerPart",
+        "Measurement",
+        "MeshFile",
+    ),
     *("MovedCut", "Placement", "Prescription", "QuadMesh", "QuadQuality", "QuadRemesh", "ReleasedFeature", "Result"),
     *("RepairReport", "SeamQuality", "SeamlessReport", "Stacks", "TexelDensity", "Transition", "TriangleDistortion"),
 }

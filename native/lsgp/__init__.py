@@ -70,10 +70,12 @@ from .layouts.stacking import Stacks, find_stacks
 from .layouts.texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .options import Options, Seamless
-from .presets.auto_unwrap import auto_unwrap, preset_options
+from .presets.auto_unwrap import auto_unwrap, preset_options, preset_weights
+from .presets.objective import Weights
 from .quads.quad_mesh import QuadMesh, QuadQuality, extract_quads, quad_quality
 from .quads.remeshing import QuadRemesh, remesh_to_quads
 from .results import (
+    Choice,
     ConeGains,
     CutPaths,
     Distortion,
@@ -95,6 +97,7 @@ __version__ = version("lsgp")
 
 __all__ = [
     "Cancelled",
+    "Choice",
     "ConeGains",
     "CurvatureError",
     "CutMover",
@@ -133,6 +136,7 @@ __all__ = [
     "TopologyError",
     "Transition",
     "TriangleDistortion",
+    "Weights",
     "at_texel_density",
     "auto_unwrap",
     "build_ledger",
@@ -161,6 +165,7 @@ __all__ = [
     "place_cones",
     "prescribe_curvature",
     "preset_options",
+    "preset_weights",
     "quad_quality",
     "read_mesh_file",
     "remesh_to_quads",

@@ -56,6 +56,22 @@ class SeamQuality(ShortRepr):
     translation_residual: float
 
 
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A map that a preset made, or could have made, on its way to a result.
+
+    name: what it was. estimate: what it was expected to cost, in hundredths of L2 stretch, as of `Weights`; infinite
+    where nothing was known. cost: what it did cost; None where it was not made. reason: what came out, or why it was
+    not made. is_best: whether it was the best so far.
+    """
+
+    name: str
+    estimate: float
+    cost: float | None
+    reason: str
+    is_best: bool = False
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SeamlessReport(EqualByContent, ShortRepr):
     """The certificate of a seamless layout: the transition and the error of every cut, and the cost of rounding.
@@ -175,6 +191,7 @@ class Result(EqualByContent, ShortRepr):
         unit square: one cell has the side `cell`.
     features: what became of `Surface.features`; None without.
     warnings: findings that leave the result usable.
+    choices: what a preset chose from, in the order in which it did; not compared by equality. Empty elsewhere.
     stage_seconds: wall-clock seconds of each stage; not compared by equality.
     factorizations, back_substitutions: numbers of those of sparse matrices.
     """
@@ -206,6 +223,7 @@ class Result(EqualByContent, ShortRepr):
     stage_seconds: dict[str, float] = field(compare=False)
     factorizations: int
     back_substitutions: int
+    choices: list[Choice] = field(default_factory=list, compare=False)
 
     def _shown(self) -> dict[str, Any]:
         return {

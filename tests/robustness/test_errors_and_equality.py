@@ -122,7 +122,8 @@ def test_every_public_dataclass_is_among_them_or_holds_no_array() -> None:
     features = {lsgp.FeatureReport}  # a list of features that are among them
     texels = {lsgp.TexelDensity, lsgp.TexelLayout}
     quads = {lsgp.QuadQuality, lsgp.QuadRemesh}  # the latter has a mesh and a layout, which are compared
-    assert without == numbers | texels | quads | features | {lsgp.MeshFile}
+    choices = {lsgp.Choice, lsgp.Weights}
+    assert without == numbers | texels | quads | features | choices | {lsgp.MeshFile}
     assert lsgp.MeshFile.__eq__ is object.__eq__  # a file is itself alone
 
 

@@ -151,6 +151,7 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
         completes=True,
         count=unwrap_options.cone_count(args),
         symmetric=unwrap_options.tries_symmetry(args),
+        weights=unwrap_options.weights_of(args),
         creases_of=args.preset if args.creases else None,
     )
 

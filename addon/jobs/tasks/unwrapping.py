@@ -82,7 +82,8 @@ class UnwrapTask:
     whether islands stay where the old UVs of the region are. aspect: of the image that the coordinates are for; 1 where
     they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
     region do not suffice; count: how many on each connected part that gets some, None for as few as bring the stretch
-    to the target; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little.
+    to the target; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little;
+    weights: by which maps are compared, None for the usual ones.
     creases_of: the preset of `lsgp.auto_unwrap` whose rule then bounds hard surfaces at creases; None: no creases.
     Regions that are rounded have none.
     """
@@ -98,6 +99,7 @@ class UnwrapTask:
     count: int | None = None
     target: float = USUAL_TARGET
     symmetric: bool = False
+    weights: lsgp.Weights | None = None
     creases_of: str | None = None
 
     @property
@@ -294,6 +296,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         count=task.count,
         target=task.target,
         symmetric=task.symmetric,
+        weights=task.weights,
         creases=task.creases_of is not None and not task.region.is_rounded,
         sharp=task.region.sharp,
         pins=pins,

@@ -63,6 +63,21 @@ STACKS: Choices = {
 _UNSEEN = {"HIDDEN", "SKIP_PRESET"} if "is_skip_preset" in bpy.types.Property.bl_rna.properties else {"HIDDEN"}
 
 
+# Properties that are factors of a weight of `lsgp.Weights`.
+WEIGHTS = {"fewer_islands": "islands", "shorter_cuts": "cuts", "fuller_square": "square", "symmetry": "symmetry"}
+
+
+def weight_property(name: str, description: str) -> Any:
+    return bpy.props.FloatProperty(
+        name=name,
+        description=f"{description} in the choice among maps, relative to the preset; 0 is no wish at all",
+        default=1.0,
+        min=0.0,
+        max=100.0,
+        soft_max=4.0,
+    )
+
+
 class UV_OT_cone_auto_unwrap(
     ConeGroupProperty,
     SeamsProperty,
@@ -156,6 +171,10 @@ class UV_OT_cone_auto_unwrap(
         "that costs hardly any stretch and few islands; only where no cones are marked",
         default=True,
     )
+    fewer_islands: weight_property("Fewer Islands", "How much fewer islands count")
+    shorter_cuts: weight_property("Shorter Cuts", "How much shorter cuts count")
+    fuller_square: weight_property("Fuller Square", "How much it counts that islands fill the square")
+    symmetry: weight_property("Symmetry", "How much it counts that cones and cuts are symmetric")
     mark: bpy.props.BoolProperty(
         name="Mark Cones",
         description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
@@ -230,6 +249,11 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
+        body = section(layout, "cone_auto_unwrap_weights", "What Counts")
+        if body is not None:
+            for name in WEIGHTS:
+                if name != "symmetry" or self.symmetric:
+                    body.prop(self, name, slider=True)
         self.draw_features(layout, "cone_auto_unwrap_features", in_tiles=self.preset == "TILE")
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
@@ -260,6 +284,7 @@ class UV_OT_cone_auto_unwrap(
                 # As it was typed, not in single precision.
                 target=round(self.target, 6),
                 symmetric=self.symmetric,
+                weights=self._weights(),
                 creases_of=creases_of,
             )
 
@@ -281,6 +306,11 @@ class UV_OT_cone_auto_unwrap(
         if stacked:
             summaries[-1] += f"; {counted(stacked, 'island')} stacked on others"
         return summaries
+
+    def _weights(self) -> lsgp.Weights:
+        """Those of the preset, times what the artist wants more or less."""
+        usual = native.lsgp.preset_weights(PRESETS[self.preset][0])
+        return replace(usual, **{of: getattr(usual, of) * getattr(self, name) for name, of in WEIGHTS.items()})
 
     def _packing(self) -> PackSettings:
         size = int(self.texture_size)

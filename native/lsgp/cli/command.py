@@ -162,6 +162,9 @@ def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
     unwrap.add_argument(
         "--picture", metavar="FILE.png", action=Writes, type=Path, help="draw the layout, its cuts and its cones"
     )
+    unwrap.add_argument(
+        "--explain", action="store_true", help="with --preset: print what it chose from, what each would cost and why"
+    )
     unwrap.add_reported(_unwrap)
 
 
@@ -275,6 +278,7 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         reports.quality_table(result, run.texels, run.packed),
         *reports.missing_lines(run.missing),
         *reports.missed_strokes(result, run),
+        *(reports.choice_lines(result.choices) if args.explain else []),
     ]
     if result.seamless is not None:
         lines.append(certificate_table(result.seamless, texture_size(args)))

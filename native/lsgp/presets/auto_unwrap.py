@@ -21,31 +21,23 @@ from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, 
 from ..options import Options, Seamless
 from ..results import Result
 from ..surface import Pins, Surface, has_strokes
-from .border_gains import AlongLattice, BorderGain, FullerSquare, LessStretch
+from .border_gains import AlongLattice, BorderGain, LowerCost
 from .completed_cones import TARGET, CompletedCones, GivenCones, or_none
 from .components import Components, keys_of
-from .cone_choices import best_map, follows_features, possible_cones
-from .map_comparison import (
-    LEAST_DIRECTION_ERROR,
-    direction_error,
-    fills_badly,
-    follows_strokes_better,
-    may_replace_undivided,
-)
+from .cone_choices import best_map, follows_features
+from .divisions import best_division
+from .map_comparison import LEAST_DIRECTION_ERROR, direction_error, follows_strokes_better
+from .objective import Objective, Weights
 
 Preset = Literal["paint", "tile", "bake"]
 
 Mapped = tuple[Surface, CompletedCones, Result]
 MakeMap = Callable[[Surface, Progress | None], tuple[CompletedCones, Result]]
 
-# Fraction of an unwrap's time that placing cones takes.
-PLACING = 0.6
 # And with making the map, where islands are packed afterward.
 PACKING = 0.9
 # Of the time of cones and maps: where those without further borders are made.
 _TRYING = 0.5
-# Where the square stays empty, islands are divided as if they had so many of them.
-_SQUARES = 2.0
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
 # well and the texture runs on; None: it runs on wherever creases run along the tiles.
 _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
@@ -59,6 +51,34 @@ _PRESETS: dict[Preset, Options] = {
     "tile": Options(seamless=Seamless(lattice="square"), straighten=True, overlaps="split"),
     "bake": Options(mode="low-stretch", straighten=True, overlaps="split", compact="full"),
 }
+
+
+_WEIGHTS: dict[Preset, Weights] = {
+    "paint": Weights(),
+    "tile": Weights(),
+    "bake": Weights(islands=0.1, cuts=0.05, borders=0.0, cones=0.0),
+}
+# A longer search fills 1 % more with the few islands of "paint", 3 % with those of "bake".
+_EFFORTS: dict[Preset, Effort] = {"paint": "quick", "tile": "good", "bake": "good"}
+
+
+def preset_weights(preset: Preset) -> Weights:
+    """What a preset of `auto_unwrap` chooses by; `dataclasses.replace` changes some of it.  Raises InputError."""
+    arguments.require_choice("preset", preset, get_args(Preset))
+    return _WEIGHTS[preset]
+
+
+def preset_effort(preset: Preset) -> Effort:
+    """How long a preset of `auto_unwrap` looks for a layout, as of `pack_islands`.  Raises InputError."""
+    arguments.require_choice("preset", preset, get_args(Preset))
+    return _EFFORTS[preset]
+
+
+def objective_of(preset: Preset, options: Options, weights: Weights | None = None) -> Objective:
+    """By which the maps of a preset with these options are compared; weights: None for those of the preset."""
+    if weights is not None:
+        arguments.require_type("weights", weights, Weights)
+    return Objective(_WEIGHTS[preset] if weights is None else weights, options.square_share)
 
 
 def preset_options(preset: Preset) -> Options:
@@ -93,6 +113,7 @@ def auto_unwrap(
     stack: Stack | None = None,
     effort: Effort | None = None,
     texels: TexelLayout | None = None,
+    weights: Weights | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Unwrap a surface ready for use: place missing cones and apply a preset.
@@ -102,23 +123,13 @@ def auto_unwrap(
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to `target`.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
-        as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
-        most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
-        quarter of the edges cut, and a tenth of the filled part of the square (a fifth where it saves one island of
-        few, three tenths where it saves two, or a tenth of many), packed tightly. Where two fifths of the cuts are
-        saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual map is isometric. Where
-        symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these save them. Where that
-        costs more, only those components are symmetric on which it costs 1 % of L2 stretch, a quarter of the edges cut,
-        and no island at most. Only without cones and `count`.
-    creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
-        half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
-        0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
-        tenths less, where it exceeds 0.002; an island for two cones fewer is no further one, unless the component is
-        small. Or where less than three fifths of the square are filled, and at no cost of stretch a tenth more with
-        them, a quarter for one further island, or two fifths for two (or a tenth; with "bake" any number). The latter
-        two only without cones, `count` or pins. In seamless layouts on squares, without marked cones and seams: those
-        of hard components of which less than three quarters (of marked features, if there are any) could run along the
-        lattice otherwise, or at an L2 stretch above 1.1, if that is worth it; all other cuts stay invisible.
+        as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, where other maps do not
+        cost less by the weights. Only without cones and `count`.
+    creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and others
+        where their maps gain by it: with half of the curvature on creases, where they are stretched visibly less or
+        cost less by the weights. Without cones, `count` or pins. In seamless layouts on squares, without marked cones
+        and seams: those of hard components whose creases cannot run along the lattice otherwise; all other cuts stay
+        invisible.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight, unless the margins leave no room. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -126,7 +137,8 @@ def auto_unwrap(
         `Options.square_share`; not with texels, which have their own.
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
-    effort: of packing a tight layout, as of `pack_islands`; None: "good".
+    effort: how long a tight layout is looked for, as of `pack_islands`; None: "quick" with "paint", else "good".
+    weights: by which maps are compared; None: `preset_weights(preset)`. `Result.choices` says what they chose from.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
         those of the placement, and ISLANDS_TINY names islands that do not keep their shape in single precision.
@@ -158,21 +170,22 @@ def auto_unwrap(
     packs = _may_pack(packing, chosen, pins, texels)
     is_free = arguments.flag("symmetric", symmetric) and count is None
     solvers = Solvers()
+    objective = objective_of(preset, chosen, weights)
 
     def mapped(options: Options, progress: Progress | None) -> Mapped:
         def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-            solver = solvers.of(opened)
-            found = possible_cones(solver, given, options, is_free, share_of(share, 0.0, PLACING))
-            return best_map(solver, found, options, pins, share_of(share, PLACING, 1.0))
+            return best_map(solvers.of(opened), given, options, objective, pins, share, symmetric=is_free)
 
-        return best_at_creases(choices, options, make, progress)
+        return best_at_creases(choices, options, objective, make, progress)
 
     mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
     found = best_for_strokes(surface, chosen, mapped, mapping)
     surface, result = found[0], found[2]
     if pins is None:
-        result = best_division(found, chosen, solvers, share_of(mapping, 1.0, 1.0))
+        result = best_division(solvers.of(surface), found[1], result, chosen, objective, mapping)
+    result = replace(result, choices=objective.choices)
     if packs:
+        packing = replace(packing, effort=preset_effort(preset) if effort is None else effort)
         result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
     elif texels is not None:
         result = at_texel_density(surface, result, texels)
@@ -264,6 +277,7 @@ class Solvers:
 def best_at_creases(
     choices: CreaseChoices,
     options: Options,
+    objective: Objective,
     make: MakeMap,
     progress: Progress | None = None,
 ) -> Mapped:
@@ -286,17 +300,10 @@ def best_at_creases(
     if is_possible:
         components = Components.of(surface)
         possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))
-        middle = (_TRYING + 1.0) / 2
-        gains: tuple[tuple[BorderGain, float, float], ...]
+        gain: BorderGain = LowerCost(components, choices.possible, objective)
         if options.seamless is not None:
-            gains = ((AlongLattice(components, choices.possible), _TRYING, 1.0),)
-        else:
-            gains = (
-                (LessStretch(components, options.square_share), _TRYING, middle),
-                (FullerSquare(components, options.square_share, choices.preset == "paint"), middle, 1.0),
-            )
-        for gain, begin, end in gains:
-            best = _gaining(gain, possible, best, make, share_of(progress, begin, end))
+            gain = AlongLattice(components, choices.possible)
+        best = _gaining(gain, possible, best, make, share_of(progress, _TRYING, 1.0))
     tell(progress, 1.0)  # maps that were not needed leave their time
     return best
 
@@ -320,26 +327,6 @@ def best_for_strokes(
             return toward
     tell(progress, 1.0)
     return usual
-
-
-def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: Progress | None = None) -> Result:
-    """The map with its islands divided further, or less, where much of the square stays empty and the packer fills it
-    better then.
-
-    Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
-    Where islands are to be few, `best_map` has decided that.
-    mapped: as of `best_at_creases`. solvers: those it was made with. progress: without time of its own.
-    Raises Cancelled.
-    """
-    surface, cones, usual = mapped
-    if options.compact != "full" or options.square_share != 1 or not fills_badly(usual, progress):
-        return usual
-    best = usual
-    for other in (replace(options, square_share=_SQUARES), replace(options, compact="sparing")):
-        divided = or_none(partial(cones.parameterize, solvers.of(surface), other, None, progress))
-        if divided is not None and may_replace_undivided(divided, best, progress):
-            best = cones.told(divided, options)
-    return best
 
 
 @dataclass(frozen=True, slots=True)

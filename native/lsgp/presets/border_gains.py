@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -11,35 +12,26 @@ from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
+from ..base.unique_rows import unique_rows
 from ..results import Result
+from ..surface import Surface
 from .components import Components, keys_of
 from .map_comparison import (
-    SMALL_MESH,
-    WELL_FILLED,
     has_direction,
     is_as_good,
-    island_count,
-    least_filled,
-    measure_of_filling,
     run_along_axes,
     seamless_worth,
-    worthwhile,
 )
+from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, island_count
 
-# Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
-# of it without further ones. So many cones that they spare pay for an island, as each has a cut that ends inside; on
-# what is small they are hardly seen. What is stretched less than this has none that one sees.
-_SEEN_EXCESS = 0.002
-_MOST_EXCESS = 0.5
-_MOST_EXCESS_WITHOUT_ISLANDS = 0.8
-_EXCESS_FOR_ISLAND = 0.004
-_CONES_FOR_ISLAND = 2
-_LEAST_FILLED_WITH_BORDERS = 0.7
+# More of the square than this is rarely filled.
+_WELL_FILLED = 0.65
 # Share of creases along the lattice that is worth as much as a texture that runs on across them.
 _WORTH_OF_RUNNING_ON = 0.15
 _MOST_L2 = 1.1
 # Of the area, where the mesh is not small: seamless layouts take long, and what is smaller is hardly seen.
 _LEAST_AREA = 0.05
+SMALL_MESH = 5000  # triangles
 # Of the stretch of maps that are the same but for rounding.
 _ROUNDING = 1e-6
 
@@ -61,77 +53,68 @@ class BorderGain(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class LessStretch:
-    """Maps of the surface that are stretched visibly less.
+class LowerCost:
+    """Maps of the surface that cost less.
 
-    components: of the surface. square_share: as of `measure_of_filling`.
+    components: of the surface. borders: (b, 2), the possible ones. objective: by which maps are compared.
     """
 
     components: Components
-    square_share: float
+    borders: IndexArray
+    objective: Objective
 
     def may_gain(self, usual: Result, chosen: NDArray[np.intp], progress: Progress | None) -> NDArray[np.bool_]:
-        """Those that are stretched visibly: where they are small beside the others, that counts less."""
-        excess = self.components.stretches(usual)[chosen] - 1
-        return self._weights(usual)[chosen] * excess > _SEEN_EXCESS
+        """Those that are expected to cost less: they keep a tenth of their stretch, are as many islands as pieces
+        between creases, and fill the square well if they do not."""
+        of, weights = self.components, self.objective.weights
+        surface = of.surface
+        opened = replace(surface, borders=np.concatenate([surface.borders, self.borders]))
+        pieces = Components.of(opened).of_triangle
+        of_piece = unique_rows(np.stack([of.of_triangle, pieces], axis=1)[(of.of_triangle >= 0) & (pieces >= 0)]).rows
+        count = np.bincount(of_piece[:, 0], minlength=of.count)
+        present, stretch = self._costs(usual)
+        expected = 0.1 * stretch + weights.islands * count * self._share_of_one(usual)
+        expected += weights.borders * self._lengths(self.borders)
+        filled = max(self.objective.filled(usual, progress), _ROUNDING)
+        of_square = weights.square * max(0.0, 1 / filled - 1 / _WELL_FILLED)
+        return (present - expected + of_square * of.areas() / of.areas().sum())[chosen] > -ERROR_OF_ESTIMATES
 
     def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Where borders halve the excess of L2 stretch over 1, and reduce it by 0.004 for each further island; without
-        further ones, where they reduce it by a fifth. On those that are not small, an island for two cones fewer is no
-        further one.
-        """
-        of = self.components
-        weights = self._weights(usual)
-        spared = np.maximum(0, of.counts(usual.cones) - of.counts(bordered.cones)) // _CONES_FOR_ISLAND
-        more = of.islands(bordered) - of.islands(usual) - np.where(weights == 1, spared, 0)
-        most = np.where(more > 0, _MOST_EXCESS, _MOST_EXCESS_WITHOUT_ISLANDS)
-        one, other = (of.stretches(result) for result in (bordered, usual))
-        with np.errstate(invalid="ignore"):
-            gain = (one - 1 <= most * (other - 1)) & (weights * (other - one) >= _EXCESS_FOR_ISLAND * more)
-        return gain[chosen]
+        """All of them if the whole map costs less, otherwise those that do."""
+        if self.may_replace(bordered, usual, None):
+            return np.ones(len(chosen), bool)
+        one, other = (self._costs(result)[0] for result in (bordered, usual))
+        return (one < other)[chosen]
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
-        """Where the map is stretched no more, has no further defects and fills the square at most three tenths less."""
-        if not is_as_good(bordered, usual, usual.distortion.l2_stretch):
+        """Where it costs less as a whole, with no further defects."""
+        if not is_as_good(bordered, usual, np.inf):
             return False
-        filled = measure_of_filling(usual, self.square_share, progress)
-        return filled(bordered) >= _LEAST_FILLED_WITH_BORDERS * filled(usual)
+        weights = self.objective.weights
+        one, other = (self.objective.quality(self._bordered(result), result, progress) for result in (bordered, usual))
+        is_best = one.cost(weights) < other.cost(weights)
+        self.objective.note("boundaries at creases", one, is_best=is_best)
+        return is_best
 
-    def _weights(self, result: Result) -> FloatArray:
-        """The area of each component relative to that of an average island, at most 1."""
-        areas = self.components.areas()
-        return np.minimum(1.0, areas / (areas.sum() / max(1, island_count(result))))
+    def _bordered(self, result: Result) -> Surface:
+        return replace(self.components.surface, borders=result.borders)
 
+    def _share_of_one(self, result: Result) -> float:
+        """What an island counts among those of a map."""
+        return min(1.0, FEW_ISLANDS / max(1, island_count(result)))
 
-@dataclass(frozen=True, slots=True)
-class FullerSquare:
-    """Maps of the surface that are no worse and fill the square clearly more.
+    def _lengths(self, edges: IndexArray) -> FloatArray:
+        return self.components.lengths(edges) / math.sqrt(self.components.areas().sum())
 
-    keeps_few: whether only two islands more, or a tenth more of many, are acceptable. Others: as of `LessStretch`.
-    """
-
-    components: Components
-    square_share: float
-    keeps_few: bool
-
-    def may_gain(self, usual: Result, chosen: NDArray[np.intp], progress: Progress | None) -> NDArray[np.bool_]:
-        """All of them, if more than two fifths of the square are empty."""
-        filled = measure_of_filling(usual, self.square_share, progress)
-        return np.full(len(chosen), filled(usual) < WELL_FILLED)
-
-    def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Where borders cost no stretch: how islands lie in the square depends on all of them."""
-        one, other = (self.components.stretches(result)[chosen] for result in (bordered, usual))
-        return one <= (1 + _ROUNDING) * other
-
-    def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
-        """Where the usual map, whose square is emptier, does not make up for that by fewer islands."""
-        more = island_count(bordered) - island_count(usual)
-        has_few = not self.keeps_few or more <= worthwhile(usual)
-        if not (has_few and is_as_good(bordered, usual, (1 + _ROUNDING) * usual.distortion.l2_stretch)):
-            return False
-        filled = measure_of_filling(usual, self.square_share, progress)
-        return filled(usual) < least_filled(-more, bordered) * filled(bordered)
+    def _costs(self, result: Result) -> tuple[FloatArray, FloatArray]:
+        """What each component costs, (c,), but for the square, and its stretch of that."""
+        of, weights = self.components, self.objective.weights
+        excess = np.nan_to_num(of.stretches(result), nan=np.inf) - 1
+        stretch = 100 * excess * of.areas() / of.areas().sum()
+        islands = weights.islands * of.islands(result) * self._share_of_one(result)
+        cuts = weights.cuts * self._lengths(result.cut_edges) + weights.borders * self._lengths(result.borders)
+        cones = weights.cones * of.counts(result.cones) * np.sqrt(of.areas() / of.areas().sum())
+        return stretch + islands + cuts + cones, stretch
 
 
 @dataclass(frozen=True, slots=True)

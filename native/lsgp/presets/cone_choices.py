@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -11,68 +13,41 @@ from numpy.typing import NDArray
 
 from .. import _lsgp
 from ..api import Solver
+from ..base.arguments import FloatArray
 from ..base.progress import Progress, share_of
 from ..errors import Elements, Finding
 from ..options import Options
 from ..results import Result
 from ..surface import Pins, Surface, surface_arrays
+from ..triangles import triangle_areas
 from .completed_cones import TARGET, CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
-from .few_islands import best_of_few
 from .map_comparison import (
-    costs_little,
     feature_share,
     gains_features,
     has_direction,
     may_replace_for_features,
-    may_replace_map,
     may_replace_straighter,
-    mirrored_cuts_cost_islands,
     releases_features,
     runs_along_features,
-    saves_islands,
     worth_along_features,
 )
+from .objective import FEW_ISLANDS, Candidate, Objective, Quality
 
 MapThrough = tuple[CompletedCones, Result]
 
-# Of the time of placing cones: where those for creases are placed.
-_BEFORE_FEATURES = 0.9
-# And what two attempts, with and without symmetry, have each.
+# Of the time of cones and maps: where those for features are placed, and then placing cones.
+_FEATURES = 0.1
+PLACING = 0.6
 _TRYING = 0.5
 # By which a map without creases along the lattice has to be better, where most run along it.
 _WORTH_OF_DIRECTION = 0.15
+# Of the islands of one map, what is expected of another: the mean over 80 meshes.
+_ISLANDS_OF_OTHERS = 0.75
+# Of the stretch that cones are placed for, what low stretch leaves: at most, of nine maps of ten.
+_LOW_STRETCH = 0.5
 # What tells that a component is not symmetric.
 _ODD = "NOT_SYMMETRIC"
-
-
-@dataclass(frozen=True, slots=True)
-class ConeChoices:
-    """Cones among which `best_map` chooses, each as of `complete_cones`.
-
-    usual: symmetric ones if all components are symmetric. symmetric: those that differ from the usual ones, or have
-    other cuts; None without. for_features: those with which creases can run along the lattice, or marked features along
-    u and v; None without.
-    """
-
-    usual: CompletedCones
-    symmetric: CompletedCones | None = None
-    for_features: CompletedCones | None = None
-
-
-def possible_cones(
-    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None = None
-) -> ConeChoices:
-    """Those of `complete_cones`, and symmetric ones and those for creases, where there are such.
-
-    symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
-    """
-    follows = follows_features(solver.surface, options) or straightens_marked(solver.surface, options)
-    if not (given.is_free and follows):
-        return _symmetric_cones(solver, given, options, symmetric, progress)
-    found = _symmetric_cones(solver, given, options, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES))
-    for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0), given.target)
-    return replace(found, for_features=for_features)
 
 
 def follows_features(surface: Surface, options: Options) -> bool:
@@ -107,71 +82,188 @@ def feature_cones(
     return or_none(lambda: complete_cones(solver, given, options, share_of(progress, _TRYING, 1.0)))
 
 
-def _symmetric_cones(
-    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None
-) -> ConeChoices:
-    """Those of `complete_cones` and, where a component is symmetric, symmetric ones; if these are the same, their cuts
-    may still be others."""
-    if not symmetric or len(given.cones):
-        return ConeChoices(complete_cones(solver, given, options, progress))
-    alike = or_none(lambda: complete_cones(solver, given, options, share_of(progress, 0.0, _TRYING), symmetric=True))
-    if alike is not None:
-        odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
-        others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
-        alike = replace(alike, placement=replace(alike.placement, warnings=others))
-        if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
-            return ConeChoices(alike)
-        alike = replace(alike, is_symmetric=True)
-    usual = complete_cones(solver, given, options, share_of(progress, _TRYING, 1.0))
-    if alike is None:
-        return ConeChoices(usual)
-    is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
-    return ConeChoices(usual, replace(usual, is_symmetric=True) if is_same else alike)
-
-
 def best_map(
     solver: Solver,
-    choices: ConeChoices,
+    given: GivenCones,
     options: Options,
+    objective: Objective,
     pins: Pins | None = None,
     progress: Progress | None = None,
+    *,
+    symmetric: bool = False,
 ) -> MapThrough:
-    """The map through the cones of `possible_cones`: the symmetric ones, or those for creases, if that costs little.
+    """The best map through the given cones and others where these do not suffice: usual ones, symmetric ones, or those
+    with which features can run along u and v, or along the lattice of seamless layouts.
 
-    Where symmetric cuts cost islands, the symmetric cones are tried with other cuts as well. Of several components,
-    only those have cones for creases that gain by them.
-    pins, progress, errors: as for `parameterize`.
+    Of several components, only those have cones for features that gain by them.
+    symmetric: whether to try symmetric ones, where no cones are given. pins, errors: as for `parameterize` and
+    `complete_cones`.
     """
-    symmetric, for_features = choices.symmetric, choices.for_features
+    follows = follows_features(solver.surface, options) or straightens_marked(solver.surface, options)
+    for_features = None
+    if given.is_free and follows:
+        for_features = feature_cones(solver, options, share_of(progress, 0.0, _FEATURES), given.target)
+        progress = share_of(progress, _FEATURES, 1.0)
     maps = _Maps(solver, pins)
-    if for_features is not None and options.seamless is None:
-        usual = best_map(solver, replace(choices, for_features=None), options, pins, progress)
+    cones = _ConeChoice(maps, given, objective, symmetric and not len(given.cones))
+    if for_features is None:
+        best = cones.best(options, progress)
+    elif options.seamless is None:
         # The other map has no time of its own.
+        usual = cones.best(options, progress)
+        usual = usual[0], usual[0].told(usual[1], options)
         return _straighter(maps, for_features, usual, options, share_of(progress, 1.0, 1.0))
-    share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
-    stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
-    along = None
-    if for_features is not None:
-        along = maps.attempt(for_features, options, next(stages))
-        if along is not None and not runs_along_features(along[1]):
-            along = None
-    # Creases along the lattice take time: they are tried with the cones that are chosen.
-    # Those that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along and along[1])
-    tried = options if is_chosen else replace(options, straighten=False)
-    best = maps.through(choices.usual, tried, next(stages))
-    if symmetric is not None:
-        # Comparing, and the map with other cuts, which few models need, have no time of their own.
-        end = (2 + (for_features is not None)) * share
-        mapping, still = next(stages), share_of(progress, end, end)
-        best = _best_symmetric(maps, symmetric, best, tried, (mapping, still))
-    if along is not None:
-        best = _best_along(maps, along, best, options, is_chosen, next(stages))
-    elif not is_chosen:
-        best = maps.through(best[0], options, next(stages))
+    else:
+        best = _best_with_features(maps, cones, for_features, options, progress)
     if options.seamless is not None:
         best = _without_creases(maps, best, options, share_of(progress, 1.0, 1.0))
     return best[0], best[0].told(best[1], options)
+
+
+def _best_with_features(
+    maps: _Maps, cones: _ConeChoice, for_features: CompletedCones, options: Options, progress: Progress | None
+) -> MapThrough:
+    """The best seamless map through cones for features, or the other ones."""
+    along = maps.attempt(for_features, options, share_of(progress, 0.0, 1 / 3))
+    if along is not None and not runs_along_features(along[1]):
+        along = None
+    # Creases along the lattice take time: they are tried with the cones that are chosen.
+    # Those that are released run along it through other cones, perhaps.
+    is_chosen = releases_features(along and along[1])
+    best = cones.best(options if is_chosen else replace(options, straighten=False), share_of(progress, 1 / 3, 2 / 3))
+    last = share_of(progress, 2 / 3, 1.0)
+    if along is not None:
+        return _best_along(maps, along, best, options, is_chosen, last)
+    return best if is_chosen else maps.through(best[0], options, last)
+
+
+class _ConeChoice:
+    """The choice between usual cones and symmetric ones, each of them placed once it may gain.
+
+    maps: of the surface. given: to be completed. symmetric: whether to try symmetric ones.
+    """
+
+    def __init__(self, maps: _Maps, given: GivenCones, objective: Objective, symmetric: bool) -> None:
+        self._maps, self._given, self._objective, self._tries_symmetric = maps, given, objective, symmetric
+        self._components = Components.of(maps.solver.surface)
+        self._options = Options()
+        self._alike: CompletedCones | None = None  # symmetric ones, once they are placed
+        self._share = 0.0  # of the area, of symmetric components
+        self._made: dict[str, tuple[MapThrough, Quality]] = {}
+
+    def best(self, options: Options, progress: Progress | None) -> MapThrough:
+        """The best map with these options.  Raises what `complete_cones` and `parameterize` raise."""
+        self._options, self._made = options, {}
+        usual = self._candidate("usual cones", 1.0, self._expected_of_usual, self._usual)
+        if not self._tries_symmetric:
+            return self._objective.choose([usual], progress)
+        candidates = [self._candidate("symmetric cones and cuts", 0.0, self._expected_of_symmetric, self._symmetric)]
+        if not options.mirrored_cuts:
+            candidates.append(
+                self._candidate("symmetric cones, other cuts", 0.5, partial(self._expected_of_others, 0.5), self._free)
+            )
+        candidates.append(usual)
+        if self._components.count > 1:
+            partly = self._candidate("some cones symmetric", 0.5, self._expected_of_partly, self._partly)
+            candidates.append(partly)
+        return self._objective.choose(candidates, progress)
+
+    def _candidate(
+        self,
+        name: str,
+        asymmetry: float,
+        expected: Callable[[], float | None],
+        make: Callable[[Progress | None], MapThrough],
+    ) -> Candidate[MapThrough]:
+        def quality(made: MapThrough, progress: Progress | None) -> Quality:
+            found = self._objective.quality(self._maps.solver.surface, made[1], progress, asymmetry * self._share)
+            self._made[name] = made, found
+            return found
+
+        return Candidate(name, expected, make, quality)
+
+    def _expected_of_symmetric(self) -> float:
+        return 0.0
+
+    def _expected_of_usual(self) -> float | None:
+        if not self._made:
+            return math.inf
+        return self._expected_of_others(1.0) if self._alike is not None else None
+
+    def _expected_of_others(self, asymmetry: float) -> float | None:
+        """Of maps with other cones or cuts than those that were made: stretched as much, unless that is more than cones
+        are placed for, with three quarters of the islands."""
+        if not self._made or self._alike is None:
+            return None
+        quality = min((made[1] for made in self._made.values()), key=lambda one: one.cost(self._objective.weights))
+        if quality.asymmetry > asymmetry * self._share:
+            return None
+        islands = max(self._components.count, _ISLANDS_OF_OTHERS * quality.islands)
+        most = 100 * (self._given.target - 1) * (_LOW_STRETCH if self._options.mode == "low-stretch" else 1.0)
+        stretch = min(quality.stretch, most)
+        other = replace(quality, stretch=stretch, islands=islands, asymmetry=asymmetry * self._share)
+        return other.cost(self._objective.weights)
+
+    def _placed(self, progress: Progress | None, *, symmetric: bool) -> CompletedCones:
+        placing = share_of(progress, 0.0, PLACING)
+        return complete_cones(self._maps.solver, self._given, self._options, placing, symmetric=symmetric)
+
+    def _symmetric(self, progress: Progress | None) -> MapThrough:
+        alike = self._alike
+        if alike is None:
+            alike = self._placed(progress, symmetric=True)
+            placement = alike.placement
+            assert placement is not None
+            surface = self._maps.solver.surface
+            odd = [finding.elements.indices for finding in placement.warnings if finding.code == _ODD]
+            is_odd = np.zeros(len(surface.triangles), bool)
+            is_odd[np.concatenate([np.empty(0, np.intp), *odd])] = True
+            areas = triangle_areas(surface)
+            others = [finding for finding in placement.warnings if finding.code != _ODD]
+            alike = replace(alike, placement=replace(placement, warnings=others), is_symmetric=not is_odd.all())
+            if alike.is_symmetric:
+                self._alike, self._share = alike, float(areas[~is_odd].sum() / areas.sum())
+        return self._maps.through(alike, self._options, share_of(progress, PLACING, 1.0))
+
+    def _free(self, progress: Progress | None) -> MapThrough:
+        assert self._alike is not None
+        return self._maps.through(replace(self._alike, is_symmetric=False), self._options, progress)
+
+    def _usual(self, progress: Progress | None) -> MapThrough:
+        cones = self._placed(progress, symmetric=False)
+        return self._maps.through(cones, self._options, share_of(progress, PLACING, 1.0))
+
+    def _partly(self, progress: Progress | None) -> MapThrough:
+        alike, usual = (self._made[name][0][0] for name in ("symmetric cones and cuts", "usual cones"))
+        cones = usual.joined(alike, self._maps.solver.surface, self._cheaper()[self._components.of_vertex])
+        return self._maps.through(replace(cones, is_symmetric=True), self._options, progress)
+
+    def _expected_of_partly(self) -> float | None:
+        if not {"symmetric cones and cuts", "usual cones"} <= self._made.keys() or self._alike is None:
+            return None
+        is_cheaper = self._cheaper()
+        if is_cheaper.all() or not is_cheaper.any():
+            return None
+        quality = self._made["symmetric cones and cuts"][1]
+        saved = (self._costs("symmetric cones and cuts") - self._costs("usual cones"))[~is_cheaper].sum()
+        return quality.cost(self._objective.weights) - float(saved)
+
+    def _cheaper(self) -> NDArray[np.bool_]:
+        """On which components the symmetric map costs no more, (c,)."""
+        return self._costs("symmetric cones and cuts") <= self._costs("usual cones")
+
+    def _costs(self, name: str) -> FloatArray:
+        """What each component costs in a map, (c,), but for the square; infinite with further defects."""
+        (_, result), quality = self._made[name]
+        of, weights = self._components, self._objective.weights
+        share = of.areas() / of.areas().sum()
+        islands = of.islands(result) * min(1.0, FEW_ISLANDS / max(1, quality.islands))
+        cuts = of.lengths(result.cut_edges) / math.sqrt(of.areas().sum())
+        stretch = 100 * share * (np.nan_to_num(of.stretches(result), nan=np.inf) - 1)
+        costs = stretch + weights.islands * islands + weights.cuts * cuts
+        costs += weights.cones * of.counts(result.cones) * np.sqrt(share)
+        costs += weights.symmetry * share * (quality.asymmetry > 0)
+        return np.where(of.defects(result) > 0, np.inf, costs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,67 +274,11 @@ class _Maps:
     pins: Pins | None
 
     def through(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough:
-        usual = cones.parameterize(self.solver, options, self.pins, progress)
-        if options.compact != "sparing" or options.square_share != 1 or self.pins is not None:
-            return cones, usual
-        # Other divisions of the same map have no time of their own.
-        end = share_of(progress, 1.0, 1.0)
-
-        def divide(other: Options) -> Result | None:
-            return or_none(partial(cones.parameterize, self.solver, other, None, end))
-
-        return cones, best_of_few(usual, options, self.solver.surface, divide, end)
+        return cones, cones.parameterize(self.solver, options, self.pins, progress)
 
     def attempt(self, cones: CompletedCones, options: Options, progress: Progress | None) -> MapThrough | None:
         """None if the library refuses it."""
         return or_none(partial(self.through, cones, options, progress))
-
-
-def _best_symmetric(
-    maps: _Maps,
-    symmetric: CompletedCones,
-    usual: MapThrough,
-    options: Options,
-    progress: tuple[Progress | None, Progress | None],
-) -> MapThrough:
-    """The usual map, or one through symmetric cones if that costs little, or with symmetric cones on the components
-    where it does: with symmetric cuts, and where these cost islands, with other cuts that save them.
-
-    progress: of the first map and of the other ones
-    """
-    mirrored = maps.attempt(symmetric, options, progress[0])
-    if mirrored is None:
-        return usual
-    may_replace = partial(may_replace_map, square_share=options.square_share, progress=progress[1])
-    best = mirrored if may_replace(mirrored[1], usual[1]) else usual
-    if best is usual:
-        partly = _partly_symmetric(maps, mirrored, usual, options, progress[1])
-        if partly is not None and may_replace(partly[1], usual[1]):
-            return partly
-    has_other_cones = set(symmetric.cones.tolist()) != set(usual[0].cones.tolist())
-    frees_cuts = not options.mirrored_cuts
-    if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored[1], usual[1])):
-        return best
-    free = maps.attempt(replace(symmetric, is_symmetric=False), options, progress[1])
-    if free is None or not saves_islands(free[1], mirrored[1], usual[1]) or not may_replace(free[1], usual[1]):
-        return best
-    return free if best is usual or may_replace(free[1], best[1]) else best
-
-
-def _partly_symmetric(
-    maps: _Maps, mirrored: MapThrough, usual: MapThrough, options: Options, progress: Progress | None
-) -> MapThrough | None:
-    """The map with symmetric cones on the components where these cost little; None if these are none or all."""
-    surface = maps.solver.surface
-    components = Components.of(surface)
-    if components.count == 1:
-        return None
-    is_other = _have_other_cones(components, mirrored[0], usual[0])
-    is_cheap = costs_little(components, mirrored[1], usual[1])
-    if not (is_other & is_cheap).any() or not (is_other & ~is_cheap).any():
-        return None
-    cones = usual[0].joined(mirrored[0], surface, is_cheap[components.of_vertex])
-    return maps.attempt(replace(cones, is_symmetric=True), options, progress)
 
 
 def _best_along(

@@ -1,52 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What maps with symmetric cones or cones for creases may cost compared with the usual map."""
+"""What maps whose features run along u and v, or that follow strokes, may cost compared with the usual map."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import FloatArray, IndexArray
 from ..base.edge_keys import side_keys
-from ..base.progress import Progress
-from ..errors import InputError
-from ..lattice import island_boxes
-from ..layouts.packing import Turned, pack_islands, turns_of
 from ..options import Options
 from ..results import Result
 from ..surface import Surface
-from ..triangles import uv_area
 from .components import Components, keys_of
+from .objective import defects, island_count
 
-# Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
-# is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
-# well. One of few that is saved is worth a fifth of what is filled, a tenth of the texel density; a pair, or a tenth of
-# many, three tenths.
+# Of the L2 stretch that the other one has.
 _MOST_L2 = 1.01
-_LEAST_FILLED = 0.9
-_LEAST_FILLED_BY_ONE_FEWER = 0.8
-_LEAST_FILLED_BY_FEWER = 0.7
-_MOST_CUTS = 1.25
-# Where the other one is stretched as well, far fewer edges cut are worth the stretch that cones are placed for, and
-# more of the square.
-_FAR_FEWER_CUTS = 0.6
-_ISOMETRIC_L2 = 1.001
-_TARGET_L2 = 1.05
-_LEAST_FILLED_FOR_CUTS = 0.75
-ISLANDS_FOR_ONE = 10
-# More of the square than this is rarely filled.
-WELL_FILLED = 0.6
-# Where islands need not be few, those of small meshes are divided otherwise up to here, as that often fills a tenth
-# more; on others it takes seconds.
-_NEARLY_FILLED = 0.7
-SMALL_MESH = 5000  # triangles
-# What twice as many islands have to fill in addition where islands need not be few.
-_FILLED_FOR_TWICE = 0.3
-_PAIR = 2
 # The same for creases along the lattice, and what share of their length has to lie there.
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
@@ -66,64 +37,6 @@ LEAST_DIRECTION_ERROR = 0.01
 _ROUNDING = 1e-6
 
 
-def may_replace_map(
-    symmetric: Result, usual: Result, square_share: float = 1.0, progress: Progress | None = None
-) -> bool:
-    """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, the
-    square filled at most a tenth less, no further defects, and one island more, or one for ten if there are as many;
-    two of fewer than ten only if the square is not filled less. One island fewer, of fewer than ten, allows for a
-    fifth less, and two fewer, or one for ten, for three tenths. If it cuts at most three fifths of the edges, its
-    stretch may be up to 1.05 and the square filled a quarter less, unless the other map is isometric.
-
-    Both as from `parameterize`, with islands on shelves, for this share of a square, in which they are packed tightly,
-    turned by quarters. How far several squares and seamless layouts are filled follows from the boxes of the islands.
-    progress: of packing.  Raises Cancelled.
-    """
-    islands = island_count(usual)
-    more = island_count(symmetric) - islands
-    has_few = islands < ISLANDS_FOR_ONE
-    saves_cuts = _saves_many_cuts(symmetric, usual)
-    most_l2 = _MOST_L2 * usual.distortion.l2_stretch
-    if saves_cuts:
-        most_l2 = max(most_l2, _TARGET_L2)
-    if not (
-        is_as_good(symmetric, usual, most_l2)
-        and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
-        and more <= (_PAIR if has_few else islands // ISLANDS_FOR_ONE)
-    ):
-        return False
-    filled = measure_of_filling(usual, square_share, progress, turned="quarters")
-    return filled(symmetric) >= least_filled(more, usual, saves_cuts) * filled(usual)
-
-
-def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
-    """How far the square has to be filled with so many more islands, relative to the usual map."""
-    if more <= -worthwhile(usual):
-        return _LEAST_FILLED_BY_FEWER
-    least = _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
-    if island_count(usual) >= ISLANDS_FOR_ONE or more not in (_PAIR, -1):
-        return least
-    return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
-
-
-def fills_badly(usual: Result, progress: Progress | None = None) -> bool:
-    """Whether two fifths of the square, three tenths with a small mesh, stay empty even if it is packed tightly."""
-    most = _NEARLY_FILLED if len(usual.island) <= SMALL_MESH else WELL_FILLED
-    return _filled_when_packed(usual, progress) < most
-
-
-def may_replace_undivided(divided: Result, usual: Result, progress: Progress | None = None) -> bool:
-    """Whether further divisions are worth their islands, which need not be few: twice as many have to fill three tenths
-    more of the square, fewer further ones proportionally less, at L2 stretch up to 1 % more and no further defects.
-    progress: of packing.  Raises Cancelled.
-    """
-    if not is_as_good(divided, usual):
-        return False
-    islands, more = island_count(usual), island_count(divided) - island_count(usual)
-    most = 1 / (1 + _FILLED_FOR_TWICE * max(0, more) / islands)
-    return _filled_when_packed(usual, progress) < most * _filled_when_packed(divided, progress)
-
-
 def is_as_good(other: Result, usual: Result, most_l2: float | None = None) -> bool:
     """Whether another map has the same triangles, no further defects, and up to this L2 stretch; None: 1 % more."""
     if most_l2 is None:
@@ -133,21 +46,6 @@ def is_as_good(other: Result, usual: Result, most_l2: float | None = None) -> bo
         and defects(other) <= defects(usual)
         and other.distortion.l2_stretch <= most_l2
     )
-
-
-def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:
-    """Whether a map through symmetric cones with symmetric cuts is stretched little, but has at least two islands more
-    than the usual map, a tenth more if there are many: other cuts for the same cones may leave fewer.
-    """
-    within_stretch = mirrored.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
-    return within_stretch and island_count(mirrored) - island_count(usual) >= worthwhile(usual)
-
-
-def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
-    """Whether a map with other cuts for symmetric cones has as many islands fewer than the one with symmetric cuts as
-    `mirrored_cuts_cost_islands` says.
-    """
-    return island_count(mirrored) - island_count(free) >= worthwhile(usual)
 
 
 def runs_along_features(result: Result) -> bool:
@@ -267,19 +165,6 @@ def _most_growth(share: FloatArray | float) -> FloatArray:
     return np.where(share >= _LEAST_FEATURES, 1.0, _MOST_L2_FOR_FEATURES) * _MOST_L2_FOR_FEATURES
 
 
-def costs_little(components: Components, symmetric: Result, usual: Result) -> NDArray[np.bool_]:
-    """On which components symmetric cones cost little, (c,): L2 stretch up to 1 % more, a quarter more of edges cut,
-    and no further islands or defects."""
-    stretches, other_stretches = (components.stretches(result) for result in (symmetric, usual))
-    return (
-        (components.solved(symmetric) == components.solved(usual))
-        & (components.defects(symmetric) <= components.defects(usual))
-        & (stretches <= _MOST_L2 * other_stretches)
-        & (components.cuts(symmetric) <= _MOST_CUTS * components.cuts(usual))
-        & (components.islands(symmetric) <= components.islands(usual))
-    )
-
-
 def _feature_shares(components: Components, result: Result) -> FloatArray:
     """The `feature_share` of each component, 0 without features."""
     report = result.features
@@ -291,50 +176,3 @@ def _feature_shares(components: Components, result: Result) -> FloatArray:
         every = components.lengths(result.seamless.creases)
         off = components.lengths(result.seamless.creases[~result.seamless.is_crease_aligned])
     return np.where(every > 0, 1 - off / np.where(every > 0, every, 1), 0.0)
-
-
-def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:
-    """Whether it has far fewer, and the other one is stretched for all of its own."""
-    has_far_fewer = len(symmetric.cut_edges) <= _FAR_FEWER_CUTS * len(usual.cut_edges)
-    return has_far_fewer and usual.distortion.l2_stretch > _ISOMETRIC_L2
-
-
-def defects(result: Result) -> int:
-    return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
-
-
-def worthwhile(usual: Result) -> int:
-    """How many islands fewer are worth a less full square, or cuts that are not symmetric."""
-    return max(_PAIR, island_count(usual) // ISLANDS_FOR_ONE)
-
-
-def island_count(result: Result) -> int:
-    return len(np.unique(result.island[result.solved]))
-
-
-def measure_of_filling(
-    usual: Result, square_share: float, progress: Progress | None, turned: Turned = True
-) -> Callable[[Result], float]:
-    """The measure of how well a map that is compared with the usual one fills its part of the square.  turned: as of
-    `pack_islands`."""
-    if square_share <= 1 and usual.seamless is None:
-        return partial(_filled_when_packed, progress=progress, turned=turned)
-    return _filled_boxes
-
-
-def _filled_when_packed(result: Result, progress: Progress | None, turned: Turned = True) -> float:
-    """The part of the unit square that the islands fill once they are packed tightly; 0 if they cannot be."""
-    allowed = turns_of(result)
-    may_turn = turned if allowed is True else allowed
-    try:
-        packed = pack_islands(result.corner_uv, result.island, turned=may_turn, effort="quick", progress=progress)
-    except InputError:
-        return 0.0
-    return uv_area(packed[result.solved])
-
-
-def _filled_boxes(result: Result) -> float:
-    """The part of all their boxes that islands fill."""
-    boxes = island_boxes(result.corner_uv, result.island)
-    room = float((boxes[:, 2:] - boxes[:, :2]).prod(axis=1).sum())
-    return uv_area(result.corner_uv[result.solved]) / room if room > 0 else 1.0

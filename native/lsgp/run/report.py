@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..io.polygons import Triangulation
 from ..layouts.texels import TexelDensity
 from ..quads.quad_mesh import QuadQuality
 from ..quads.remeshing import QuadRemesh
-from ..results import FeatureReport, Measurement, Placement, Result
+from ..results import Choice, FeatureReport, Measurement, Placement, Result
 from .missing_faces import MissingFaces
 from .unwrap_file import Packed, Run
 
@@ -306,6 +306,19 @@ def missed_strokes(result: Result, run: Run) -> list[str]:
     lines += [f"  {names[k]}: {errors[k]:.2f}" for k in worst[:_MOST_STROKES]]
     if len(worst) > _MOST_STROKES:
         lines.append(f"  and {len(worst) - _MOST_STROKES} more, in the report (--report)")
+    return lines
+
+
+def choice_lines(choices: Sequence[Choice]) -> list[str]:
+    """A line for each map that a preset made or considered, in that order; none without."""
+    if not choices:
+        return []
+    width = max(len(choice.name) for choice in choices)
+    lines = ["choices, with what they cost or were expected to, in hundredths of L2 stretch:"]
+    for choice in choices:
+        told = "" if math.isinf(choice.estimate) else f"{choice.estimate:.2f}"
+        cost = f"({told})" if choice.cost is None else f"{choice.cost:.2f}"
+        lines.append(f"  {'*' if choice.is_best else ' '} {choice.name:{width}} {cost:>7}  {choice.reason}")
     return lines
 
 

@@ -28,17 +28,17 @@ from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with
 from ..options import Options
 from ..presets.auto_unwrap import (
     PACKING,
-    PLACING,
     CreaseChoices,
     Mapped,
     Solvers,
     best_at_creases,
-    best_division,
     best_for_strokes,
     crease_choices,
+    objective_of,
 )
 from ..presets.completed_cones import CompletedCones, GivenCones
-from ..presets.cone_choices import best_map, possible_cones
+from ..presets.cone_choices import best_map
+from ..presets.divisions import best_division
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
@@ -56,6 +56,7 @@ from .unwrap_options import (
     texel_layout,
     tries_symmetry,
     up_of,
+    weights_of,
 )
 
 # Warnings of results that are not what was asked for, which --strict refuses.
@@ -255,19 +256,16 @@ def _map(
             choices = crease_choices(surface, cones, args.preset, options, progress=share_of(progress, 0.0, 0.0))
 
     solvers = Solvers()
+    objective = objective_of(args.preset or "paint", options, weights_of(args))
 
     def mapped_with(options: Options, progress: Progress | None) -> Mapped:
         def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-            with run.stage("place_cones"):
-                solver = solvers.of(opened)
-                placing = share_of(share, 0.0, PLACING)
-                found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
-            completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
-            run.add_seconds(result.stage_seconds)
-            return completed, result
+            return best_map(solvers.of(opened), cones, options, objective, None, share, symmetric=tries_symmetry(args))
 
-        return best_at_creases(choices, options, make, progress)
+        with run.stage("choose"):
+            return best_at_creases(choices, options, objective, make, progress)
 
-    mapped = best_for_strokes(surface, options, mapped_with, progress)
-    run.surface, run.placement = mapped[0], mapped[1].placement
-    return file, best_division(mapped, options, solvers, share_of(progress, 1.0, 1.0))
+    surface, completed, result = best_for_strokes(surface, options, mapped_with, progress)
+    run.surface, run.placement = surface, completed.placement
+    result = best_division(solvers.of(surface), completed, result, options, objective, progress)
+    return file, replace(result, choices=objective.choices)

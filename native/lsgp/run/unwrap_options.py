@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import get_args
 
@@ -35,7 +35,8 @@ from ..options import (
     SeamMode,
     UnfoldMethod,
 )
-from ..presets.auto_unwrap import Preset, preset_options
+from ..presets.auto_unwrap import Preset, preset_effort, preset_options, preset_weights
+from ..presets.objective import Weights
 from ..stitching import at_stitched
 from ..surface import Surface
 from .direction_options import add_direction_options, require_finite_up
@@ -88,6 +89,14 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "explicit options override those of the preset (default: none)",
     )
     add_cones_option(unwrap)
+    unwrap.add_argument(
+        "--weights",
+        metavar="NAME=W,...",
+        type=_weights,
+        help="with --preset: what it chooses by, in hundredths of L2 stretch: islands and cones (each one), cuts and "
+        "borders at creases (as long as the root of the area), square (as much of it left empty as is filled), "
+        "symmetry; see --explain (default: those of the preset)",
+    )
     unwrap.add_argument(
         "--prescription",
         choices=get_args(PrescriptionRule),
@@ -445,7 +454,7 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         "--effort",
         choices=get_args(Effort),
         help="of packing tight layouts: the first one that is found, the best of some hundreds, or of many more, for "
-        "minutes (default: good)",
+        "minutes (default: quick with paint, otherwise good)",
     )
 
 
@@ -509,6 +518,32 @@ def cones_file(args: argparse.Namespace) -> Path | None:
 def cone_count(args: argparse.Namespace) -> int | None:
     """How many cones are to be placed automatically on each component; None where that is left to the library."""
     return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
+
+
+def _weights(text: str) -> dict[str, float]:
+    """NAME=W,... as a dictionary.  Raises ArgumentTypeError."""
+    names = [field.name for field in fields(Weights)]
+    out = {}
+    for part in text.split(","):
+        name, _, value = part.partition("=")
+        try:
+            out[name] = float(value)
+        except ValueError:
+            out[name] = math.nan
+        if name not in names or not 0 <= out[name] < math.inf:
+            raise argparse.ArgumentTypeError(
+                f"'{part}' is no weight; give NAME=W with a number from 0 up, NAME one of {', '.join(names)}"
+            )
+    return out
+
+
+def weights_of(args: argparse.Namespace) -> Weights | None:
+    """What the preset chooses by; None without one.  Raises UsageError where weights are given without a preset."""
+    if args.preset is None:
+        if args.weights is not None:
+            raise UsageError("--weights are those of a preset; add --preset, or leave them out")
+        return None
+    return replace(preset_weights(args.preset), **(args.weights or {}))
 
 
 def tries_symmetry(args: argparse.Namespace) -> bool:
@@ -577,7 +612,10 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
         raise UsageError(
             f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
         )
-    return Packing(args.pack, margin, args.udim, args.stack, args.effort)
+    effort = args.effort
+    if effort is None and args.preset is not None and args.pack != SHELVES:
+        effort = preset_effort(args.preset)
+    return Packing(args.pack, margin, args.udim, args.stack, effort)
 
 
 def library_options(args: argparse.Namespace) -> Options:

@@ -84,9 +84,11 @@ class Recutter {
   Array<Index> pieces_behind(Index opened, Index seed) const;
   std::size_t count_sides(const Array<Index>& pieces) const;
   template <typename Visit>
-  void for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit);
+  void for_each_side(Index piece, const Motion& motion, Visit visit);
   CoverageRaster raster_of(const Array<Index>& pieces);
-  double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion);
+  // What moved pieces share with those of a raster.  goes_on: whether more than this is of interest.
+  template <typename GoesOn>
+  double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion, GoesOn goes_on);
 
   const PieceGraph graph_;
   const double area_;
@@ -151,17 +153,15 @@ std::size_t Recutter::count_sides(const Array<Index>& pieces) const {
   return count;
 }
 
-// Calls visit(tail, head) for the sides of pieces in the current state, moved.
+// Calls visit(tail, head) for the sides of a piece in the current state, moved.
 template <typename Visit>
-void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) {
-  for (const Index piece : pieces) {
-    const Motion whole = motion * now_.motion[piece];
-    const Complex turn = std::polar(1.0, whole.angle);
-    for (const PieceGraph::Side& side : graph_.boundary[piece]) {
-      visit(turn * side.tail + whole.shift, turn * side.head + whole.shift);
-    }
+void Recutter::for_each_side(Index piece, const Motion& motion, Visit visit) {
+  const Motion whole = motion * now_.motion[piece];
+  const Complex turn = std::polar(1.0, whole.angle);
+  for (const PieceGraph::Side& side : graph_.boundary[piece]) {
+    visit(turn * side.tail + whole.shift, turn * side.head + whole.shift);
   }
-  const double sides = static_cast<double>(count_sides(pieces));
+  const double sides = static_cast<double>(graph_.boundary[piece].size());
   work_ += sides;
   checkpoint(operations_a_side * sides);
 }
@@ -175,14 +175,21 @@ CoverageRaster Recutter::raster_of(const Array<Index>& pieces) {
     frame = around(frame, {z.real() - radius, z.real() + radius, z.imag() - radius, z.imag() + radius});
   }
   CoverageRaster raster(frame, std::sqrt(area_ / cells_of_layout));
-  for_each_side(pieces, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
+  for (const Index piece : pieces) {
+    for_each_side(piece, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
+  }
   raster.sum_up();
   return raster;
 }
 
-double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) {
+template <typename GoesOn>
+double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion,
+                        GoesOn goes_on) {
   double out = 0;
-  for_each_side(pieces, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
+  for (const Index piece : pieces) {
+    for_each_side(piece, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
+    if (!goes_on(out)) break;
+  }
   return out;
 }
 
@@ -208,7 +215,7 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
   for (const Index piece : moving) side[piece] = Side::moving;
   for (const Index piece : resting) side[piece] = Side::resting;
   const CoverageRaster rest = raster_of(resting);
-  const double without = now_.overlap - shared(rest, moving, {});
+  const double without = now_.overlap - shared(rest, moving, {}, [](double) { return true; });
   Exchange best;
   double least = score(now_.overlap, now_.cost, weight) - least_score_gain;
   Array<char> in_tree = now_.in_tree;
@@ -220,8 +227,10 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
     if (!moves_left && side[path.right] != Side::moving) continue;
     const Motion to_meet = now_.motion[path.right] * path.across * now_.motion[path.left].inverse();
     const Motion motion = moves_left ? to_meet : to_meet.inverse();
-    const double overlap = without + shared(rest, moving, motion);
-    if (!(score(overlap, 0, weight) < least)) continue;  // even if it cost nothing
+    const auto may_gain = [&](double overlap) { return score(overlap, 0, weight) < least; };  // if it cost nothing
+    const double overlap =
+        without + shared(rest, moving, motion, [&](double so_far) { return may_gain(without + so_far); });
+    if (!may_gain(overlap)) continue;
     in_tree[p] = 1;
     const double cost = cost_of(in_tree);
     in_tree[p] = 0;

@@ -18,6 +18,13 @@ namespace {
 
 constexpr double cheap_share = 0.5;  // of the largest gain, required of a site that cuts reach more cheaply
 
+// Of which cones are chosen, at most: few are stretched no less with more sites.
+int most_sites(const PlacementTask& task, const PlacementOptions& options) {
+  const int required = 4 * std::abs(task.mesh.euler);  // quarter turns by Gauss-Bonnet
+  const bool has_many = std::max(required, options.count.value_or(0)) > most_one_by_one;
+  return has_many ? sites_of_many : usual_sites;
+}
+
 // Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
   if (choice.is_possible() || chooser.reaches_all()) return;
@@ -76,7 +83,7 @@ std::string told_of_automatic(const PlacementTask& task, PlacementOptions option
                               int& maps) {
   options.count.reset();
   const ProgressMonitor::Interval interval(monitor, 1, 1);
-  ConeChooser chooser(task, options, usual_sites, monitor);
+  ConeChooser chooser(task, options, most_sites(task, options), monitor);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();
   maps += placement.maps();
@@ -132,7 +139,7 @@ Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const
 
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
                             ProgressMonitor& monitor) {
-  ConeChooser chooser(task, options, usual_sites, monitor);
+  ConeChooser chooser(task, options, most_sites(task, options), monitor);
   if (!options.count) {
     require_few_conditions(chooser.required_count(), "The curvature of this component takes about", "cones");
   }

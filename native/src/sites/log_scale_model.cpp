@@ -9,8 +9,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double worth_while = 2;  // vertices per node, from which on the surface is coarsened
-constexpr double nodes_a_site = 2, least_nodes = 20000;
+constexpr double worth_while = 1.3;  // vertices per node, from which on the surface is coarsened
+constexpr double nodes_a_site = 2, least_nodes = 4000;
 // A spike stretches its surroundings, which the variance has to include.
 constexpr int rings_around_sharp = 3;
 

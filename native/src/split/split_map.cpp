@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -214,88 +215,98 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
   cut_apart(mesh, std::move(is_cut), part, motion, map);
 }
 
-// A map and its division.
-struct DividedMap {
-  ComponentMap map;
-  Division division;
-};
-
 // The cheapest division of maps that differ by their cuts.
 class WaySearch {
  public:
   WaySearch(const SplitRules& rules, ProgressMonitor& monitor) : rules_(rules), monitor_(monitor) {}
 
+  // Divides a map unless that costs at least as much as what was found so far.  way: must outlive this object.
   // weighings: the surface with each of the costs that further cuts may have.  least: dividing an overlapping layout is
   // assumed to add at least this cost.
   void divide(const ComponentMap& way, const Array<CutCost>& rules, const Array<MetricMesh>& weighings, double least);
 
-  const ComponentMap* chosen() const { return chosen_; }
-
+  // Regroups the islands of the divided maps, the cheapest first, until one map is a single island.
+  void regroup_divided();
   // Whether there is a division that leaves one island.
-  bool leaves_one() const {
-    const auto is_one = [](const DividedMap& known) { return known.division.price.islands == 1; };
-    return best_.price.islands == 1 || std::any_of(regrouped_.begin(), regrouped_.end(), is_one);
-  }
+  bool leaves_one() const { return is_one(best_) || std::any_of(of_regrouped_.begin(), of_regrouped_.end(), is_one); }
 
-  // The cheapest map divided, its islands regrouped where that pays.
+  // The cheapest map, with pieces that made room for others if it has several islands.
   ComponentMap best();
 
  private:
-  // Other islands of a divided map.
-  void regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps);
+  // A map and its division.
+  struct Divided {
+    const ComponentMap* map;
+    Division division;
+  };
+
+  static bool is_one(const Divided& divided) { return divided.division.price.islands == 1; }
+  // Other islands of a divided map, if that pays.
+  void regroup_islands(const Divided& divided, Regrouping steps);
   bool pays(const Division& other) const {
-    const Index saved = best_.price.islands - other.price.islands;
-    return saved > 0 && other.cost() < best_.cost() && other.one_sided <= best_.one_sided + least_one_sided &&
-           other.price.cuts <= best_.price.cuts + cuts_for_island * static_cast<double>(saved);
+    const Division& now = best_.division;
+    const Index saved = now.price.islands - other.price.islands;
+    return saved > 0 && other.cost() < now.cost() && other.one_sided <= now.one_sided + least_one_sided &&
+           other.price.cuts <= now.price.cuts + cuts_for_island * static_cast<double>(saved);
   }
 
   const SplitRules& rules_;
   ProgressMonitor& monitor_;
-  Division best_{};
-  const ComponentMap* chosen_ = nullptr;  // none so far
-  Array<DividedMap> regrouped_;           // the cheapest first
+  Array<Divided> waiting_;  // to be regrouped
+  std::deque<ComponentMap> regrouped_;
+  Array<Divided> of_regrouped_;
+  Divided best_{nullptr, {}};
 };
 
 void WaySearch::divide(const ComponentMap& way, const Array<CutCost>& rules, const Array<MetricMesh>& weighings,
                        double least) {
   const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
   const MapDivider divider(rules_, ends, way, monitor_);
+  const double least_cost = divider.cost_before() + (divider.is_whole() ? 0 : least);
   for (const CutCost rule : rules) {
     for (const MetricMesh& costs : weighings) {
-      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost()) return;
-      Division other = divider.divide(rule, costs);
-      if (rules_.may_recut()) regroup_islands(way, other.parts, Regrouping::direct);
-      if (chosen_ && !(other.cost() < best_.cost())) continue;
-      best_ = std::move(other);
-      chosen_ = &way;
+      if (best_.map != nullptr && least_cost >= best_.division.cost()) return;
+      Divided found{&way, divider.divide(rule, costs)};
+      if (best_.map == nullptr || found.division.cost() < best_.division.cost()) best_ = found;
+      if (rules_.may_recut()) waiting_.push_back(std::move(found));
     }
   }
 }
 
-void WaySearch::regroup_islands(const ComponentMap& way, const MapParts& parts, Regrouping steps) {
+void WaySearch::regroup_divided() {
+  std::stable_sort(waiting_.begin(), waiting_.end(),
+                   [](const Divided& a, const Divided& b) { return a.division.cost() < b.division.cost(); });
+  for (const Divided& divided : waiting_) {
+    if (is_one(best_)) break;
+    regroup_islands(divided, Regrouping::direct);
+  }
+  waiting_.clear();
+}
+
+void WaySearch::regroup_islands(const Divided& divided, Regrouping steps) {
   monitor_.advance(0);
-  ComponentMap divided = way;
-  apply(rules_.surface(), parts, divided);
-  std::optional<ComponentMap> other = regroup(rules_.surface(), rules_.factor(), steps, divided);
+  ComponentMap map = *divided.map;
+  apply(rules_.surface(), divided.division.parts, map);
+  std::optional<ComponentMap> other = regroup(rules_.surface(), rules_.factor(), steps, map);
   if (!other) return;
   const PerHalfedge<char> ends = ends_of(rules_.surface(), *other);
-  Division division = MapDivider(rules_, ends, *other, monitor_).divide(CutCost::shortest, rules_.surface());
-  const auto is_cheaper = [&](const DividedMap& known) { return division.cost() < known.division.cost(); };
-  const auto at = std::find_if(regrouped_.begin(), regrouped_.end(), is_cheaper);
-  regrouped_.insert(at, {std::move(*other), std::move(division)});
-  if (regrouped_.size() > most_regrouped) regrouped_.pop_back();
+  regrouped_.push_back(std::move(*other));
+  Divided found{&regrouped_.back(),
+                MapDivider(rules_, ends, regrouped_.back(), monitor_).divide(CutCost::shortest, rules_.surface())};
+  if (pays(found.division)) best_ = found;
+  of_regrouped_.push_back(std::move(found));
 }
 
 ComponentMap WaySearch::best() {
-  const Array<DividedMap> direct = regrouped_;
-  for (const DividedMap& known : direct) {
-    if (known.division.price.islands > 1) regroup_islands(known.map, known.division.parts, Regrouping::detours);
+  std::stable_sort(of_regrouped_.begin(), of_regrouped_.end(),
+                   [](const Divided& a, const Divided& b) { return a.division.cost() < b.division.cost(); });
+  of_regrouped_.resize(std::min(of_regrouped_.size(), most_regrouped));
+  for (const Divided& divided : Array<Divided>(of_regrouped_)) {
+    if (is_one(best_)) break;
+    if (!is_one(divided)) regroup_islands(divided, Regrouping::detours);
   }
-  const auto regrouped =
-      std::find_if(regrouped_.begin(), regrouped_.end(), [&](const DividedMap& known) { return pays(known.division); });
-  const bool is_regrouped = regrouped != regrouped_.end();
-  ComponentMap out = is_regrouped ? regrouped->map : *chosen_;
-  apply(rules_.surface(), is_regrouped ? regrouped->division.parts : best_.parts, out);
+  ComponentMap out = *best_.map;
+  apply(rules_.surface(), best_.division.parts, out);
   return out;
 }
 
@@ -339,7 +350,11 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   WaySearch search(rules, monitor);
   for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, {surface}, cost_of_island);
   search.divide(map, {CutCost::shortest, CutCost::no_slivers}, weighings, 0);
-  if (!search.leaves_one()) search.divide(map, {CutCost::no_small_parts}, weighings, 0);
+  search.regroup_divided();
+  if (!search.leaves_one()) {
+    search.divide(map, {CutCost::no_small_parts}, weighings, 0);
+    search.regroup_divided();
+  }
   map = search.best();
   return true;
 }

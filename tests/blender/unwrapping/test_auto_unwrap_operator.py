@@ -178,6 +178,15 @@ def test_bake_cuts_a_strip_so_that_it_fills_the_square():
     assert UvMap(strip).islands() == 1
 
 
+def test_what_counts_is_obeyed():
+    strip = add_strip()
+    islands = []
+    for factor in (0, 1, 100):
+        unwrap(fewer_islands=factor)
+        islands.append(UvMap(strip).islands())
+    assert islands == sorted(islands, reverse=True) and islands[0] > 1 == islands[-1]
+
+
 def test_paint_leaves_parts_with_marked_seams_whole():
     strip = add_strip()
     unwrap()

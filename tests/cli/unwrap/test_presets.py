@@ -28,7 +28,7 @@ def test_without_a_preset_the_map_is_the_conformal_one_with_its_overlaps(lsgp, b
     report_of(lsgp, "--mode", "conformal", "--overlaps", "keep")
     assert (ball_files / "out.obj").read_bytes() == plain
     plain_choices = ("--mode", "conformal", "--overlaps", "keep", "--compact", "off", "--pack", "shelves")
-    report_of(lsgp, "--preset", "paint", *plain_choices)
+    report_of(lsgp, "--preset", "paint", "--no-symmetric", *plain_choices)
     assert (ball_files / "out.obj").read_bytes() == plain
 
 
@@ -37,12 +37,12 @@ def test_paint_and_bake_keep_lengths(lsgp, ball_files: Path, preset: str) -> Non
     conformal, chosen = report_of(lsgp), report_of(lsgp, "--preset", preset, "--no-symmetric")
     compact = ["--compact", {"paint": "sparing", "bake": "full"}[preset]]
     by_hand = report_of(lsgp, "--mode", "low-stretch", "--overlaps", "split", *compact)
-    assert chosen["distortion"] == by_hand["distortion"]
+    assert chosen["distortion"] == pytest.approx(by_hand["distortion"], rel=1e-9)
     assert chosen["distortion"]["l2_stretch"] < conformal["distortion"]["l2_stretch"]
 
 
 def test_tile_is_seamless_and_takes_the_options_of_seamless_layouts(lsgp, ball_files: Path) -> None:
-    seamless = report_of(lsgp, "--preset", "tile", "--tiles", 24)["seamless"]
+    seamless = report_of(lsgp, "--preset", "tile", "--no-symmetric", "--tiles", 24)["seamless"]
     up = ("--up", 0, 1, 0)
     assert seamless == report_of(lsgp, "--seamless", "--tiles", 24, "--overlaps", "split", *up)["seamless"]
     assert report_of(lsgp, "--preset", "tile", "--lattice", "hexagon")["seamless"]["rotation_order"] == 6
@@ -70,8 +70,9 @@ def test_nearly_straight_sides_become_straight_unless_that_is_turned_off(lsgp, t
         (a, b), (c, d) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
         return float(np.abs(a * d - b * c).sum() / 2 / np.ptp(uv, axis=(0, 1)).prod())
 
-    assert covered_share("--preset", "bake") == pytest.approx(1, abs=1e-6)
-    assert covered_share("--preset", "bake", "--no-straighten") < 0.999
+    whole = ("--preset", "bake", "--compact", "off")
+    assert covered_share(*whole) == pytest.approx(1, abs=1e-6)
+    assert covered_share(*whole, "--no-straighten") < 0.999
     refused = lsgp("unwrap", "panel.obj", "-o", "out.obj", "--no-straighten")
     assert refused.code == 2 and "add --preset paint, tile or bake" in refused.err
 
@@ -117,4 +118,4 @@ def test_creases_are_borders_where_the_map_gains_by_them(lsgp, tmp_path: Path) -
     bordered, plain = lsgp(*run).report(), lsgp(*run, "--no-creases").report()
     assert bordered["islands"] == 3 and not bordered["cones"] and plain["cones"]
     assert bordered["distortion"]["l2_stretch"] - 1 < 0.5 * (plain["distortion"]["l2_stretch"] - 1)
-    assert bordered["stage_seconds"]["place_cones"] > 0
+    assert bordered["stage_seconds"]["choose"] > 0

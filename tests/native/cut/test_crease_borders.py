@@ -231,7 +231,8 @@ def test_few_corners_are_left_to_cones() -> None:
     cube = surface(meshes.cube(3))
     assert len(lsgp.crease_borders(cube, most_corners=8)) == 0
     assert len(lsgp.crease_borders(cube, most_corners=7)) == 7 * 3  # as many edges of a cube, of three edges each
-    assert len(lsgp.auto_unwrap(cube, preset="paint").cones) == 8
+    # The texture runs on across creases where that counts.
+    assert len(lsgp.auto_unwrap(cube, preset="paint", weights=lsgp.Weights(borders=5.0)).cones) == 8
     assert len(lsgp.auto_unwrap(cube, preset="bake").cones) == 0
     assert len(lsgp.auto_unwrap(cube, preset="bake", creases=False).cones) == 8
 

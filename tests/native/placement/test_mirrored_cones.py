@@ -3,16 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-
 import lsgp
 import meshes
 import numpy as np
 import pytest
 import zoo
-from lsgp.presets import map_comparison
-from lsgp.presets.map_comparison import may_replace_map
-from lsgp.triangles import uv_area
 from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
 from placement_checks import place
@@ -139,16 +134,16 @@ def test_the_first_press_is_symmetric_unless_that_is_turned_off_or_cones_are_giv
 
 
 @pytest.mark.slow
-def test_each_component_is_symmetric_where_that_costs_little() -> None:
-    """Alone the box with a handle gets usual cones, since symmetric ones are many, and MESH gets symmetric ones."""
+def test_of_several_components_each_has_the_cones_that_cost_least() -> None:
+    """Alone the box with handles takes many symmetric cones."""
     box, horned = zoo.member("box-with-handles-cells=5-handles=1-seed=0").mesh(), meshes.two_horned(3)
+    result = lsgp.auto_unwrap(surface(meshes.merge([box, horned])), creases=False)
+    made = [choice for choice in result.choices if choice.cost is not None and "cones" in choice.name]
+    assert [choice for choice in made if choice.is_best][-1].cost == min(choice.cost for choice in made)
     first = len(box.positions)
-    alone = [lsgp.auto_unwrap(surface(mesh)) for mesh in (box, horned)]
-    assert alone[0].cones.tolist() == lsgp.auto_unwrap(surface(box), symmetric=False).cones.tolist()
-    assert alone[1].cones.tolist() != lsgp.auto_unwrap(surface(horned), symmetric=False).cones.tolist()
-    joint = lsgp.auto_unwrap(surface(meshes.merge([box, horned])))
-    assert sorted(joint.cones[joint.cones < first].tolist()) == sorted(alone[0].cones.tolist())
-    assert sorted((joint.cones[joint.cones >= first] - first).tolist()) == sorted(alone[1].cones.tolist())
+    of_horned = {int(cone) - first for cone in result.cones if cone >= first}
+    image = images_in_x(horned)
+    assert {int(image[cone]) for cone in of_horned} == of_horned
 
 
 def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None:
@@ -156,139 +151,15 @@ def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None
     assert lsgp.auto_unwrap(given) == lsgp.auto_unwrap(given, symmetric=False)
 
 
-def filled_boxes(result: lsgp.Result, *_: object, **__: object) -> float:
-    """The part that islands fill of all their boxes, or of the square around the longest one, if that is less."""
-    boxes = lsgp.lattice.island_boxes(result.corner_uv, result.island)
-    size = boxes[:, 2:] - boxes[:, :2]
-    return uv_area(result.corner_uv[result.solved]) / max(size.prod(axis=1).sum(), size.max() ** 2)
-
-
-def test_a_symmetric_map_replaces_another_only_at_a_small_cost(monkeypatch: pytest.MonkeyPatch) -> None:
-    # How far a packer fills a square with a triangle cut off has no part in it.
-    monkeypatch.setattr(map_comparison, "_filled_when_packed", filled_boxes)
-    usual = lsgp.auto_unwrap(surface(meshes.merge([meshes.two_horned(1)] * 10)), count=4, preset="bake", pack="shelves")
-    islands = int(usual.island.max()) + 1
-    assert islands >= 10
-
-    def with_islands(more: int) -> lsgp.Result:
-        island = usual.island.copy()
-        island[:more] = islands + np.arange(more)
-        return replace(usual, island=island)
-
-    def with_l2(factor: float) -> lsgp.Result:
-        l2 = factor * usual.distortion.l2_stretch
-        return replace(usual, distortion=replace(usual.distortion, l2_stretch=l2))
-
-    assert may_replace_map(usual, usual)
-    assert may_replace_map(with_islands(islands // 10), usual)
-    assert not may_replace_map(with_islands(islands // 10 + 1), usual)
-    assert may_replace_map(with_l2(1.009), usual) and not may_replace_map(with_l2(1.011), usual)
-    assert not may_replace_map(replace(usual, flipped=np.array([3], np.int32)), usual)
-    # Half the cuts are worth a stretch up to the target, but not an isometric map.
-    l2 = usual.distortion.l2_stretch
-    for stretch, before, may in ((1.049, 1.02, True), (1.051, 1.02, False), (1.049, 1.0005, False)):
-        with_few_cuts = replace(with_l2(stretch / l2), cut_edges=usual.cut_edges[: len(usual.cut_edges) // 2])
-        assert may_replace_map(with_few_cuts, with_l2(before / l2)) == may
-    # Islands fill their boxes as before, but one square around the longest is larger than all boxes.
-    longer = replace(usual, corner_uv=usual.corner_uv * [8, 1 / 8])
-    assert not may_replace_map(longer, usual) and may_replace_map(longer, usual, square_share=2.0)
-
-
-def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square() -> None:
-    whole = replace(lsgp.preset_options("paint"), compact="off")
-    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, options=whole, pack="shelves")
-    assert usual.island.max() == 0
-    size = np.ptp(usual.corner_uv, axis=(0, 1))
-    # The longer side stays as it is, and with it the square.
-    for height, may in ((0.91, True), (0.89, False)):
-        narrower = usual.corner_uv * np.where(size == size.max(), 1, height)
-        assert may_replace_map(replace(usual, corner_uv=narrower), usual) == may
-
-
-def with_rectangles(usual: lsgp.Result, count: int, height: float = 1.0) -> lsgp.Result:
-    """So many islands of two triangles, each as high as this relative to its width; other triangles are points."""
-    solved = np.arange(len(usual.island)) < 24
-    rectangle = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]]) * [1, height]
-    corner_uv = np.zeros_like(usual.corner_uv)
-    island = np.where(solved, 0, -1).astype(np.int32)
-    for i in range(count):
-        corner_uv[2 * i : 2 * i + 2] = rectangle + np.array([1.1 * i, 0])
-        island[2 * i : 2 * i + 2] = i
-    return replace(usual, corner_uv=corner_uv, island=island, solved=solved)
-
-
-def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
-    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    # One square fills a square, two do half of it, three three quarters, four all of it, and five five ninths.
-    replaced = {
-        (1, 1): True,
-        (1, 2): False,
-        (1, 3): False,
-        (2, 3): True,
-        (2, 4): True,
-        (2, 5): False,
-        (3, 5): False,
-    }
-    for (before, after), may in replaced.items():
-        assert may_replace_map(with_rectangles(usual, after), with_rectangles(usual, before)) == may
-
-
-@pytest.mark.parametrize(("before", "filled", "least"), [(2, 1 / 2, 0.8), (3, 3 / 4, 0.7)])
-def test_fewer_islands_may_fill_the_square_less(before: int, filled: float, least: float) -> None:
-    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    squares = with_rectangles(usual, before)
-    # A single rectangle fills as much of the square as its height, but for margins.
-    for more, may in ((0.05, True), (-0.05, False)):
-        assert may_replace_map(with_rectangles(usual, 1, filled * (least + more)), squares) == may
-
-
-def test_one_island_fewer_of_many_may_not_fill_the_square_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(map_comparison, "_filled_when_packed", filled_boxes)
-    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    squares = with_rectangles(usual, 12)
-    # Strips fill as much of a square that is as wide as they are as their heights add up to.
-    for count, filled, may in ((11, 0.85, False), (11, 0.95, True), (10, 0.75, True), (10, 0.65, False)):
-        assert may_replace_map(with_rectangles(usual, count, filled / count), squares) == may
-
-
-@dataclass
-class MapsByCuts:
-    """Stands in for a solver: a map for the usual cones, and two for the symmetric ones, of which it counts islands."""
-
-    usual: lsgp.Result
-    mirrored: lsgp.Result
-    free: lsgp.Result
-    surface: lsgp.Surface
-    made: list[str] = field(default_factory=list)
-
-    def parameterize(self, cones: np.ndarray, angles: object, options: lsgp.Options, *_: object) -> lsgp.Result:
-        self.made.append("usual" if not len(cones) else "mirrored" if options.mirrored_cuts else "free")
-        return getattr(self, self.made[-1])
-
-
-# Islands of the maps, and which of them are made and chosen.
-@pytest.mark.parametrize(
-    ("usual", "mirrored", "free", "tried", "chosen"),
-    [
-        (3, 5, 3, True, "free"),
-        (3, 6, 4, True, "free"),
-        (3, 5, 4, True, "usual"),
-        (2, 4, 3, True, "mirrored"),
-        (3, 4, 2, False, "mirrored"),
-        (4, 4, 2, False, "mirrored"),
-    ],
-)
-def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
-    usual: int, mirrored: int, free: int, tried: bool, chosen: str
-) -> None:
-    unwrapping = lsgp.presets.cone_choices
-    result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)), surface(MESH))
-    choices = unwrapping.ConeChoices(
-        unwrapping.CompletedCones(np.array([], np.int32), [], None),
-        unwrapping.CompletedCones(np.array([3, 5], np.int32), [None, None], None, is_symmetric=True),
-    )
-    whole = replace(lsgp.preset_options("paint"), compact="off")
-    _, best = unwrapping.best_map(maps, choices, whole)
-    assert maps.made == ["usual", "mirrored", "free"][: 2 + tried]
-    assert best == getattr(maps, chosen)
+def test_symmetry_is_obeyed_as_it_is_weighed() -> None:
+    """Without weight the stretch, islands, cuts and square alone decide; with much of it nothing else does."""
+    given = surface(MESH)
+    costs = {}
+    for weight in (0.0, 100.0):
+        result = lsgp.auto_unwrap(given, weights=lsgp.Weights(symmetry=weight))
+        made = [choice for choice in result.choices if choice.cost is not None and "cones" in choice.name]
+        costs[weight] = {choice.name: choice.cost for choice in made}
+        best = [choice for choice in made if choice.is_best][-1]
+        assert best.cost == min(choice.cost for choice in made)
+    assert list(costs[100.0]) == ["symmetric cones and cuts"]
+    assert len(costs[0.0]) > 1

@@ -164,13 +164,12 @@ def test_presets_lay_parts_of_machines_along_u_and_v(pack: str) -> None:
     """Everything but the round ends of a capped barrel and the inside of a hollow pipe."""
     radius, height = 1 + 0.06 * np.sin(np.linspace(0, np.pi, 7)), np.linspace(0, 2, 7)
     capped = closed.lathe(radius, height, 24, caps=(True, True))
-    result = lsgp.auto_unwrap(surface(capped), preset="paint", pack=pack)
+    whole = replace(lsgp.preset_options("paint"), compact="off")
+    result = lsgp.auto_unwrap(surface(capped), preset="paint", pack=pack, options=whole)
     is_side = (capped.triangles < 7 * 24).all(axis=1)
     on_side = result.corner_uv[is_side]
     low, high = on_side.min(axis=(0, 1)), on_side.max(axis=(0, 1))
-    natural = lsgp.auto_unwrap(
-        surface(capped), preset="paint", pack=pack, options=replace(lsgp.preset_options("paint"), straighten=False)
-    )
+    natural = lsgp.auto_unwrap(surface(capped), preset="paint", pack=pack, options=replace(whole, straighten=False))
 
     def at_the_rims(uv: np.ndarray) -> np.ndarray:
         """Which rims are straight along u or v."""

@@ -307,9 +307,11 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
     unwrapping = lsgp.presets.cone_choices
     box = surface(HARD["box"])
     solver = lsgp.Solver(box)
-    usual = unwrapping.complete_cones(solver, unwrapping.GivenCones.of(), TILE)
+    given = unwrapping.GivenCones.of()
+    usual = unwrapping.complete_cones(solver, given, TILE)
     # Gauss-Bonnet requires more than one cone of half a turn.
     refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None)
+    monkeypatch.setattr(unwrapping, "feature_cones", lambda *_: refused)
     tried = []
 
     def parameterize(self: lsgp.Solver, cones: NDArray[np.int32], *others: Any) -> lsgp.Result:
@@ -318,9 +320,10 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
 
     whole = lsgp.Solver.parameterize
     monkeypatch.setattr(lsgp.Solver, "parameterize", parameterize)
-    chosen, result = unwrapping.best_map(solver, unwrapping.ConeChoices(usual, for_features=refused), TILE)
-    assert tried == [1, len(usual.cones)]
-    assert chosen == usual
+    objective = lsgp.presets.auto_unwrap.objective_of("tile", TILE)
+    chosen, result = unwrapping.best_map(solver, given, TILE, objective)
+    assert tried == [1, len(usual.cones), len(usual.cones)]  # the last one with its creases along the lattice
+    assert chosen.cones.tolist() == usual.cones.tolist() and chosen.angles == usual.angles
     np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)
 
 
