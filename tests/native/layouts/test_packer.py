@@ -9,7 +9,7 @@ from functools import cache
 import lsgp
 import numpy as np
 import pytest
-from island_kits import KINDS, Kit, gathered, kit
+from island_kits import KINDS, Kit, fan, gathered, kit, quads
 from other_process import in_another_process
 from packing_checks import Packed, areas, border, least_gap, measured, overlapping, similarities
 from packing_digest import digest
@@ -447,6 +447,28 @@ def test_disks_lie_in_rings() -> None:
     boxes = sum(np.ptp(given.corner_uv[given.island == i], axis=(0, 1)).prod() for i in range(30))
     area = measured(given.corner_uv, given.corner_uv, given.island, 0.0)
     assert measured(given.corner_uv, uv, given.island, 1 / 1024).coverage > 1.1 * area.coverage * area.side**2 / boxes
+
+
+@pytest.mark.parametrize("count", [1, 4, 40])
+def test_holes_of_holes_are_filled(count: int) -> None:
+    """Rings, one for the hole of each, and a disk for that of it, hardly smaller than these."""
+    angle = np.arange(33) * (2 * math.pi / 32)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    circle[-1] = circle[0]
+
+    def between(inner: float, outer: float) -> np.ndarray:
+        return quads(outer * circle[:-1], outer * circle[1:], inner * circle[1:], inner * circle[:-1])
+
+    rings = [*[between(0.85, 1.0)] * count, *[between(0.65, 0.8)] * count, *[0.6 * fan(circle[:-1])] * count]
+    given, margin = gathered(rings), 1 / 1024
+    uv = lsgp.pack_islands(*given, margin, effort="quick")
+    require_room(given, uv, margin)
+    boxes = [(uv[given.island == i].min(axis=(0, 1)), uv[given.island == i].max(axis=(0, 1))) for i in range(3 * count)]
+    low, high = (np.array(ends) for ends in zip(*boxes, strict=True))
+    for first in (0, count):
+        outer, inner = slice(first, first + count), slice(first + count, first + 2 * count)
+        is_inside = (low[inner, None] > low[outer]).all(axis=2) & (high[inner, None] < high[outer]).all(axis=2)
+        assert (is_inside.sum(axis=0) == 1).all() and (is_inside.sum(axis=1) == 1).all()
 
 
 def test_a_thousand_scraps_are_packed() -> None:
