@@ -283,9 +283,9 @@ def best_at_creases(
 ) -> Mapped:
     """The surface with the best borders among the possible ones, its cones and its map.
 
-    Other borders are tried on components that are stretched without them, and then on others that leave much of the
-    square empty; and all of them where no map is found without.
-    make: the cones and the map of a surface, as of `possible_cones` and `best_map`. progress, errors: of `make`.
+    Other borders are tried on components that may gain by them; and all of them where no map is found without.
+    objective: by which maps that are not seamless are compared. make: the cones and the map of a surface, as of
+    `best_map`. progress, errors: of `make`.
     """
     surface, is_possible = choices.surface, choices.possible is not None
     trying = share_of(progress, 0.0, _TRYING if is_possible else 1.0)
@@ -300,10 +300,13 @@ def best_at_creases(
     if is_possible:
         components = Components.of(surface)
         possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))
-        gain: BorderGain = LowerCost(components, choices.possible, objective)
+        rest = share_of(progress, _TRYING, 1.0)
         if options.seamless is not None:
-            gain = AlongLattice(components, choices.possible)
-        best = _gaining(gain, possible, best, make, share_of(progress, _TRYING, 1.0))
+            best = _gaining(AlongLattice(components, choices.possible), possible, best, make, rest)
+        else:
+            gain = LowerCost(components, choices.possible, objective)
+            with objective.bounded(gain.cost(best[2], share_of(rest, 0.0, 0.0))):
+                best = _gaining(gain, possible, best, make, rest)
     tell(progress, 1.0)  # maps that were not needed leave their time
     return best
 

@@ -14,7 +14,6 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.progress import Progress
 from ..base.unique_rows import unique_rows
 from ..results import Result
-from ..surface import Surface
 from .components import Components, keys_of
 from .map_comparison import (
     has_direction,
@@ -22,7 +21,7 @@ from .map_comparison import (
     run_along_axes,
     seamless_worth,
 )
-from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, island_count
+from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, Quality, island_count
 
 # More of the square than this is rarely filled.
 _WELL_FILLED = 0.65
@@ -81,23 +80,24 @@ class LowerCost:
 
     def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
         """All of them if the whole map costs less, otherwise those that do."""
-        if self.may_replace(bordered, usual, None):
+        is_best = self.may_replace(bordered, usual, None)
+        self.objective.note("boundaries at creases", self._quality(bordered, None), is_best=is_best)
+        if is_best:
             return np.ones(len(chosen), bool)
         one, other = (self._costs(result)[0] for result in (bordered, usual))
         return (one < other)[chosen]
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
         """Where it costs less as a whole, with no further defects."""
-        if not is_as_good(bordered, usual, np.inf):
-            return False
-        weights = self.objective.weights
-        one, other = (self.objective.quality(self._bordered(result), result, progress) for result in (bordered, usual))
-        is_best = one.cost(weights) < other.cost(weights)
-        self.objective.note("boundaries at creases", one, is_best=is_best)
-        return is_best
+        return is_as_good(bordered, usual, np.inf) and self.cost(bordered, progress) < self.cost(usual, progress)
 
-    def _bordered(self, result: Result) -> Surface:
-        return replace(self.components.surface, borders=result.borders)
+    def cost(self, result: Result, progress: Progress | None) -> float:
+        """Of a map of the surface that may end at borders.  progress: of packing.  Raises Cancelled."""
+        return self._quality(result, progress).cost(self.objective.weights)
+
+    def _quality(self, result: Result, progress: Progress | None) -> Quality:
+        bordered = replace(self.components.surface, borders=result.borders)
+        return self.objective.quality(bordered, result, progress)
 
     def _share_of_one(self, result: Result) -> float:
         """What an island counts among those of a map."""

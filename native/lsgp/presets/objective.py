@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -120,6 +121,7 @@ class Objective:
         self._known: list[tuple[Result, Quality]] = []
         self.choices: list[Choice] = []
         self._components: Components | None = None  # of the latest surface
+        self._bound = math.inf
 
     def quality(
         self, surface: Surface, result: Result, progress: Progress | None = None, asymmetry: float = 0.0
@@ -155,6 +157,15 @@ class Objective:
             return filled_when_packed(result, progress)
         return filled_boxes(result)
 
+    @contextmanager
+    def bounded(self, cost: float) -> Iterator[None]:
+        """Meanwhile nothing is made that is expected to cost more than another map does."""
+        self._bound = cost
+        try:
+            yield
+        finally:
+            self._bound = math.inf
+
     def note(self, name: str, quality: Quality, estimate: float = math.inf, *, is_best: bool) -> None:
         """Add a map to the trace."""
         self.choices.append(Choice(name, estimate, quality.cost(self.weights), _in_words(quality), is_best))
@@ -173,7 +184,7 @@ class Objective:
             if not possible:
                 break
             estimate, least = min(possible)
-            if rank[:2] <= (0, 0) and estimate - ERROR_OF_ESTIMATES >= rank[2]:
+            if rank[:2] <= (0, 0) and estimate - ERROR_OF_ESTIMATES >= min(rank[2], self._bound):
                 break
             candidate = waiting.pop(least)
             try:

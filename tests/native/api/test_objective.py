@@ -94,6 +94,16 @@ def test_others_are_made_as_long_as_they_may_cost_less(
     assert all(said[name].cost == costs[name][1] for name in made) and said[best].is_best
 
 
+def test_nothing_is_made_that_another_map_outdoes() -> None:
+    tried: list[str] = []
+    objective = Objective(lsgp.Weights())
+    costs = {"a": (0.0, 3.0), "b": (2.5, 1.0)}
+    with objective.bounded(2.0):
+        assert objective.choose(candidates(costs, tried)) == "a"
+    assert tried == ["a"]
+    assert objective.choose(candidates(costs, tried)) == "b"
+
+
 def test_no_defect_is_worth_anything() -> None:
     """A map with defects is never the better one, and others are made whatever is expected of them."""
     tried: list[str] = []
