@@ -100,7 +100,7 @@ class LayoutSearch {
   void separate(const Budget& budget);
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
-  int below(int most) { return lsgp::below(random_, most); }
+  int below(int most) { return lsgp::uniform_below(random_, most); }
   PackedLayout layout();
   [[noreturn]] void refuse(const Order& order, double side);
 

@@ -22,7 +22,7 @@ constexpr double cost_of_row_pair = 4, cost_of_body_pair = 3;
 
 }  // namespace
 
-int below(std::mt19937& random, int most) {
+int uniform_below(std::mt19937& random, int most) {
   return most <= 1 ? 0 : static_cast<int>(random() % static_cast<std::uint32_t>(most));
 }
 
@@ -119,13 +119,14 @@ void Separation::move(Index body, std::mt19937& random) {
   };
   const auto pose_count = static_cast<int>(poses_[body].size());
   for (int k = 0; k <= std::min(tried_poses, pose_count - 1); ++k) {
-    const int pose = k == 0 ? now.pose : below(random, pose_count);
+    const int pose = k == 0 ? now.pose : uniform_below(random, pose_count);
     const int columns = last_column(body, pose) + 1, rows = last_row(body, pose) + 1;
     if (columns < 1 || rows < 1) continue;
-    for (int i = 0; i < places_anywhere; ++i) offer({pose, below(random, columns), below(random, rows)});
+    for (int i = 0; i < places_anywhere; ++i)
+      offer({pose, uniform_below(random, columns), uniform_below(random, rows)});
     for (int i = 0; i < places_nearby; ++i) {
-      offer({pose, now.column + below(random, 2 * nearby + 1) - nearby,
-             now.row + below(random, 2 * nearby + 1) - nearby});
+      offer({pose, now.column + uniform_below(random, 2 * nearby + 1) - nearby,
+             now.row + uniform_below(random, 2 * nearby + 1) - nearby});
     }
   }
   Sample least = best[0];
@@ -193,7 +194,7 @@ bool Separation::run(const SeparationLimits& limits, Array<Placed>& placed, std:
     const auto fits = [&](int pose) { return last_column(b, pose) >= 0 && last_row(b, pose) >= 0; };
     const auto count = static_cast<int>(poses_[b].size());
     int pose = placed[b].pose;
-    for (int tried = 0, first = below(random, count); !fits(pose); ++tried) {
+    for (int tried = 0, first = uniform_below(random, count); !fits(pose); ++tried) {
       if (tried == count) return false;
       pose = (first + tried) % count;
     }
@@ -204,7 +205,8 @@ bool Separation::run(const SeparationLimits& limits, Array<Placed>& placed, std:
   double least = total_overlap();
   Array<Index> order = bodies_;
   for (int waited = 0; least > 0 && waited < patience && work_ <= most_work; ++waited) {
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[below(random, static_cast<int>(i))]);
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[uniform_below(random, static_cast<int>(i))]);
     for (const Index b : order) {
       if (work_ > most_work) break;
       move(b, random);

@@ -13,7 +13,7 @@
 namespace lsgp {
 
 // A number from 0 to less than `most`, the same with every library.
-int below(std::mt19937& random, int most);
+int uniform_below(std::mt19937& random, int most);
 
 // The size of a tile, in texels, how many rounds may make nothing better, and after about how much work to give up.
 struct SeparationLimits {
