@@ -316,9 +316,8 @@ def choice_lines(choices: Sequence[Choice]) -> list[str]:
     width = max(len(choice.name) for choice in choices)
     lines = ["choices, with what they cost or were expected to, in hundredths of L2 stretch:"]
     for choice in choices:
-        told = "" if math.isinf(choice.estimate) else f"{choice.estimate:.2f}"
-        cost = f"({told})" if choice.cost is None else f"{choice.cost:.2f}"
-        lines.append(f"  {'*' if choice.is_best else ' '} {choice.name:{width}} {cost:>7}  {choice.reason}")
+        cost = f"about {choice.estimate:5.2f}" if choice.cost is None else f"{choice.cost:11.2f}"
+        lines.append(f"  {'*' if choice.is_best else ' '} {choice.name:{width}}  {cost}  {choice.reason}")
     return lines
 
 

@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp.base.counted import counted
 from lsgp.triangles import uv_area
 from map_checks import surface
 from zoo import closed, swept
@@ -45,7 +46,7 @@ def test_the_division_that_costs_least_is_chosen(name: str, preset: lsgp.Preset)
     result = lsgp.auto_unwrap(surface(MODELS[name]), preset=preset)
     made = [choice for choice in divisions(result) if choice.cost is not None]
     assert [choice for choice in made if choice.is_best][-1].cost == min(choice.cost for choice in made)
-    assert f"{count(result)} islands" in [choice for choice in made if choice.is_best][-1].reason
+    assert f"{counted(count(result), 'island')}," in [choice for choice in made if choice.is_best][-1].reason
     assert len(result.overlapping) == 0 == len(result.flipped)
 
 
