@@ -155,10 +155,15 @@ const char* exception_name(lsgp::ErrorKind kind) {
   return "LsgpError";
 }
 
+// Or what Python raises meanwhile, as KeyboardInterrupt.
 void raise_in_python(const lsgp::Error& error) {
-  const py::object type = py::module_::import("lsgp.errors").attr(exception_name(lsgp::error_kind(error.code())));
-  const py::object exception = type(lsgp::name(error.code()), error.what(), to_elements(error.elements()));
-  PyErr_SetObject(type.ptr(), exception.ptr());
+  try {
+    const py::object type = py::module_::import("lsgp.errors").attr(exception_name(lsgp::error_kind(error.code())));
+    const py::object exception = type(lsgp::name(error.code()), error.what(), to_elements(error.elements()));
+    PyErr_SetObject(type.ptr(), exception.ptr());
+  } catch (py::error_already_set& raised) {
+    raised.restore();
+  }
 }
 
 // Calls a verb without the GIL.

@@ -267,7 +267,10 @@ def prescribe_curvature(
     options: Options = Options(),
     progress: Progress | None = None,
 ) -> Prescription:
-    """Cone angles and log scale without unfolding.  Arguments and errors as in `parameterize`."""
+    """Cone angles and log scale without unfolding.  Arguments and errors as in `parameterize`.
+
+    A map has other angles where it follows strokes, or where it was repaired, which ANGLES_ADJUSTED tells.
+    """
     arguments.require_callable(progress)
     out = _lsgp.prescribe_curvature(surface_arrays(surface), *cone_arrays(cones, angles, options), progress)
     return Prescription(**out)

@@ -325,7 +325,9 @@ class World:
         if ended.error is not None:
             return ended.told, error_faults(self.surface, ended.error)
         faults, told = prescription_faults(self.surface, ended.value), ended.value
-        unwrapped = outcome(self._fresh)
+        # Which angles suit strokes better is seen from maps.
+        options = replace(self.options, follow_strokes=False)
+        unwrapped = outcome(lambda: lsgp.parameterize(self.surface, self.cones, self.angles, options, self.pins))
         if unwrapped.error is None and self._keeps_angles(unwrapped.value):
             of_map = dict(zip(unwrapped.value.cones.tolist(), unwrapped.value.cone_angles.tolist(), strict=True))
             gaps = [

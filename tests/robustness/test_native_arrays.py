@@ -14,7 +14,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp import _lsgp
+from lsgp import _lsgp, errors
 from lsgp.api import cone_arrays
 from lsgp.surface import surface_arrays
 from map_checks import surface
@@ -184,3 +184,16 @@ def test_vertices_far_beyond_the_corners_take_no_memory() -> None:
         strict=True,
     ):
         assert np.array_equal(found, expected)
+
+
+def test_an_interrupt_while_an_error_is_made_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A signal is handled by whatever Python code runs next."""
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(errors.InputError, "__init__", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        _lsgp.distinct_corners(np.full(11, -1), np.zeros((11, 2)))
+    with pytest.raises(KeyboardInterrupt):
+        _lsgp.pack_islands(np.zeros((1, 3, 2)), np.array([7], np.int32), PACKING, None)
