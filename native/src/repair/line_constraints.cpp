@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/checkpoint.hpp"
 #include "solvers/cholesky.hpp"
 #include "systems/quadratic_forms.hpp"
 
@@ -241,9 +242,35 @@ DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reductio
   return out;
 }
 
+namespace {
+
+using Columns = Eigen::SparseMatrix<double>;
+
+// A product of sparse matrices, some columns after the other.
+Columns product(const Columns& left, const Columns& right) {
+  constexpr Eigen::Index products_at_once = 1 << 20;
+  constexpr double operations_a_product = 20;
+  const auto products_of = [&](Eigen::Index column) {
+    Eigen::Index products = 0;
+    for (Columns::InnerIterator it(right, column); it; ++it)
+      products += left.outerIndexPtr()[it.row() + 1] - left.outerIndexPtr()[it.row()];
+    return products;
+  };
+  Columns out(left.rows(), right.cols());
+  for (Eigen::Index first = 0, end = 0; first < right.cols(); first = end) {
+    Eigen::Index products = 0;
+    while (end < right.cols() && products < products_at_once) products += products_of(end++);
+    out.middleCols(first, end - first) = left * right.middleCols(first, end - first);
+    checkpoint(operations_a_product * static_cast<double>(products));
+  }
+  return out;
+}
+
+}  // namespace
+
 FreedomSystem::FreedomSystem(const CutSurface& surface, const DegreesOfFreedom& freedom)
     : surface_(surface), coordinates_(coordinates_from(freedom)) {
-  dirichlet_ = coordinates_.transpose() * form_of_coordinates(surface) * coordinates_;
+  dirichlet_ = product(coordinates_.transpose() * form_of_coordinates(surface), coordinates_);
 }
 
 Eigen::VectorXcd FreedomSystem::fit(const Jacobians& jacobians) const {
