@@ -19,6 +19,8 @@ from .texel_raster import ON_EDGE, ComplexArray, Indices, cross, edge_distances,
 
 # Walks over more triangles are given up; they happen only where triangles are far smaller than texels.
 _MOST_STEPS = 1000
+# So many walks at once are told of often enough, and take little memory.
+_AT_ONCE = 1 << 17
 # In pixels: copies of an edge that are this near to each other are no cut.
 _SAME = 1e-6
 
@@ -65,6 +67,17 @@ def find_seams(triangles: IndexArray, corners: ComplexArray) -> Seams:
 
 def walk(seams: Seams, edge: Indices, start: ComplexArray, goal: ComplexArray, steps: Steps) -> Walked:
     """Walk from places on edges across these and straight on to goals.  All (k,). steps: told of.  Raises Cancelled."""
+    begins = range(0, max(len(edge), 1), _AT_ONCE)
+    some = [slice(begin, begin + _AT_ONCE) for begin in begins]
+    walked = [_walk_at_once(seams, edge[of], start[of], goal[of], steps) for of in some]
+    return Walked(
+        np.concatenate([of.arrived for of in walked]),
+        np.concatenate([of.place for of in walked]),
+        np.concatenate([of.turn for of in walked]),
+    )
+
+
+def _walk_at_once(seams: Seams, edge: Indices, start: ComplexArray, goal: ComplexArray, steps: Steps) -> Walked:
     place, begin = goal.copy(), start.copy()
     turn, arrived = np.ones(len(edge), complex), np.zeros(len(edge), bool)
     edge, active = edge.copy(), np.arange(len(edge))
