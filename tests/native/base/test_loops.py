@@ -271,6 +271,10 @@ REVIEWED = {
         ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
     ],
     "repair/flat_metric.cpp": [("for (double length = 1; length > shortest_step; length /= 2)", "20 halvings", SHORT)],
+    "repair/line_constraints.cpp": [
+        ("for (Eigen::Index first = 0, end = 0; first < right.cols(); first = end)", "passes a column each time", OWN),
+        ("while (end < right.cols() && products < products_at_once)", "passes a column each time", SHORT),
+    ],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
     "repair/straight_sides.cpp": [
         ("for (Index h = first; !is_listed[h];)", SIDES, SHORT),
