@@ -463,15 +463,28 @@ REVIEWED = {
             OWN,
         ),
     ],
-    "packing/bit_rows.hpp": [("while (begin < end)", "words of a row", SHORT)],
-    "packing/footprint.cpp": [("while (length >> (level + 1))", "bits of an int", SHORT)],
+    "packing/bit_rows.hpp": [
+        ("while (begin < end)", "words of a row", SHORT),
+        ("while (column < end)", "words of a row", SHORT),
+    ],
+    "packing/construction.cpp": [
+        ("for (int row = first_row_; left > 0; ++row)", "rows of the tile: below the last one nothing fits", OWN),
+        (
+            "for (std::size_t s = 0; s < spans.size(); s += spans.size() / looks + 1)",
+            "a fixed number of rows of a footprint",
+            SHORT,
+        ),
+    ],
+    "packing/footprint.cpp": [
+        ("while (length >> (level + 1))", "bits of an int", SHORT),
+        ("for (int begin = 0, taken = 0; taken < end; begin = taken)", "free stretches of a row", SHORT),
+    ],
     "packing/footprint.hpp": [
         ("for (int column = begin; column <= last; column += BitRows::word_bits)", "words of a row", SHORT),
-        ("while (taken & 1)", "bits of a word", SHORT),
     ],
     "packing/layout_search.cpp": [
         (
-            "for (int i = 0; i < most && (needed > side || side > enough * needed); ++i)",
+            "for (int i = 0; i < most && (i == 0 || !is_done()); ++i)",
             "a fixed number of layouts",
             WITHIN,
         ),
@@ -499,7 +512,7 @@ REVIEWED = {
         ("for (int x = left; x < right; x += BitRows::word_bits)", "words of a row", SHORT),
         ("for (int step = first_step; step > 0;)", "halved unless the cost gets lower, over places in a raster", SHORT),
         (
-            "for (int tried = 0, first = below(random, count); !fits(pose); ++tried)",
+            "for (int tried = 0, first = uniform_below(random, count); !fits(pose); ++tried)",
             "poses of an island, each once",
             SHORT,
         ),
