@@ -110,7 +110,7 @@ def _pack_islands(
 
 
 def clipped(triangles: FloatArray, box: FloatArray) -> FloatArray:
-    """The parts of triangles, (m, 3, 2), inside a box, (2, 2) from low to high, as triangles, (k, 3, 2)."""
+    """Triangles, (k, 3, 2), with the parts that others, (m, 3, 2), have inside a box, (2, 2) from low to high."""
     inside = ((triangles >= box[0]) & (triangles <= box[1])).all(axis=(1, 2))
     found = [triangles[inside]]
     for polygon in triangles[~inside]:
@@ -118,7 +118,10 @@ def clipped(triangles: FloatArray, box: FloatArray) -> FloatArray:
             for side, bound in ((1.0, box[0, axis]), (-1.0, box[1, axis])):
                 polygon = _half(polygon, side * (polygon[:, axis] - bound))
         found += [polygon[None, [0, k, k + 1]] for k in range(1, len(polygon) - 1)]
-    return np.concatenate(found)
+    # Where a side is cut, rounding may leave it beyond the box, and a triangle beside the box leaves a line.
+    parts = np.clip(np.concatenate(found), *box)
+    (a, b), (c, d) = (parts[:, 1] - parts[:, 0]).T, (parts[:, 2] - parts[:, 0]).T
+    return parts[a * d != b * c]
 
 
 def _half(polygon: FloatArray, height: FloatArray) -> FloatArray:

@@ -18,10 +18,11 @@ from .components import Components, keys_of
 from .map_comparison import (
     has_direction,
     is_as_good,
+    island_count,
     run_along_axes,
     seamless_worth,
 )
-from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, Quality, island_count
+from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, Quality
 
 # More of the square than this is rarely filled.
 _WELL_FILLED = 0.65

@@ -23,6 +23,7 @@ from ..triangles import triangle_areas
 from .completed_cones import TARGET, CompletedCones, GivenCones, complete_cones, or_none
 from .components import Components
 from .map_comparison import (
+    cost_on_lattice,
     feature_share,
     gains_features,
     has_direction,
@@ -195,13 +196,16 @@ class _ConeChoice:
         are placed for, with three quarters of the islands."""
         if not self._made or self._alike is None:
             return None
-        quality = min((made[1] for made in self._made.values()), key=lambda one: one.cost(self._objective.weights))
+        (_, result), quality = min(self._made.values(), key=lambda one: one[1].cost(self._objective.weights))
         if quality.asymmetry > asymmetry * self._share:
             return None
         islands = max(self._components.count, _ISLANDS_OF_OTHERS * quality.islands)
         most = 100 * (self._given.target - 1) * (_LOW_STRETCH if self._options.mode == "low-stretch" else 1.0)
         stretch = min(quality.stretch, most)
-        other = replace(quality, stretch=stretch, islands=islands, asymmetry=asymmetry * self._share)
+        on_lattice = cost_on_lattice(result, even=True)
+        other = replace(
+            quality, stretch=stretch, islands=islands, asymmetry=asymmetry * self._share, on_lattice=on_lattice
+        )
         return other.cost(self._objective.weights)
 
     def _placed(self, progress: Progress | None, *, symmetric: bool) -> CompletedCones:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from ..options import Options
 from ..results import Result
 from ..surface import Surface
 from .components import Components, keys_of
-from .objective import defects, island_count
 
 # Of the L2 stretch that the other one has.
 _MOST_L2 = 1.01
@@ -128,6 +128,18 @@ def seamless_worth(share: FloatArray | float, l2_stretch: FloatArray | float, re
     )
 
 
+def cost_on_lattice(result: Result, *, even: bool = False) -> float:
+    """What a seamless layout is worth but for its stretch, in hundredths of L2 stretch; 0 for other ones.
+
+    even: as if tiles were as large on all components.
+    """
+    if result.seamless is None:
+        return 0.0
+    if even:
+        result = replace(result, warnings=[])
+    return -100 * float(seamless_worth(feature_share(result), 0.0, result)) / _FEATURES_FOR_STRETCH
+
+
 def run_along_axes(surface: Surface, result: Result, edges: IndexArray) -> NDArray[np.bool_]:
     """Whether edges, (e, 2), are parallel to u or v, on one of their sides at least."""
     along = np.abs(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv).reshape(-1, 2)
@@ -176,3 +188,13 @@ def _feature_shares(components: Components, result: Result) -> FloatArray:
         every = components.lengths(result.seamless.creases)
         off = components.lengths(result.seamless.creases[~result.seamless.is_crease_aligned])
     return np.where(every > 0, 1 - off / np.where(every > 0, every, 1), 0.0)
+
+
+def defects(result: Result) -> int:
+    """Flipped and overlapping triangles, and wrong angle sums."""
+    return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
+
+
+def island_count(result: Result) -> int:
+    """Of those that have a map."""
+    return len(np.unique(result.island[result.solved]))

@@ -21,6 +21,7 @@ from ..results import Choice, Result
 from ..surface import Surface
 from ..triangles import uv_area
 from .components import Components
+from .map_comparison import cost_on_lattice, defects, island_count
 
 T = TypeVar("T")
 
@@ -70,7 +71,8 @@ class Quality:
     square roots of their shares of the area. cuts, borders: their length in square
     roots of the area. empty: the area of the texture that is left empty, as a multiple of that which is filled.
     asymmetry: 0 where cuts run alike on both sides of the mirror plane, or there is none; 0.5 where only cones do; 1
-    where nothing does.
+    where nothing does. on_lattice: of seamless layouts, what features off the lattice and small tiles cost, in
+    hundredths of L2 stretch, less than 0 where they are large.
     """
 
     left_out: int
@@ -82,6 +84,7 @@ class Quality:
     cones: float
     empty: float
     asymmetry: float = 0.0
+    on_lattice: float = 0.0
 
     def cost(self, weights: Weights) -> float:
         """In hundredths of L2 stretch."""
@@ -96,6 +99,7 @@ class Quality:
             + weights.cones * self.cones
             + weights.square * self.empty
             + weights.symmetry * self.asymmetry
+            + self.on_lattice
         )
 
 
@@ -144,6 +148,7 @@ class Objective:
             borders=_length(surface, surface.borders) / size,
             cones=float((of.counts(result.cones) * np.sqrt(of.areas() / of.areas().sum())).sum()),
             empty=1 / max(self.filled(result, progress), 1e-3) - 1,
+            on_lattice=cost_on_lattice(result),
         )
         self._known.append((result, found))
         return replace(found, asymmetry=asymmetry)
@@ -233,16 +238,6 @@ def _in_words(quality: Quality) -> str:
     if quality.defects:
         said += f", {quality.defects} defects"
     return said + (f", {quality.left_out} triangles left out" if quality.left_out else "")
-
-
-def defects(result: Result) -> int:
-    """Flipped and overlapping triangles, and wrong angle sums."""
-    return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
-
-
-def island_count(result: Result) -> int:
-    """Of those that have a map."""
-    return len(np.unique(result.island[result.solved]))
 
 
 def filled_when_packed(result: Result, progress: Progress | None) -> float:

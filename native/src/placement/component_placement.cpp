@@ -18,11 +18,10 @@ namespace {
 
 constexpr double cheap_share = 0.5;  // of the largest gain, required of a site that cuts reach more cheaply
 
-// Of which cones are chosen, at most: few are stretched no less with more sites.
+// Of which cones are chosen, at most: as many as a target takes are stretched no less with more sites.
 int most_sites(const PlacementTask& task, const PlacementOptions& options) {
   const int required = 4 * std::abs(task.mesh.euler);  // quarter turns by Gauss-Bonnet
-  const bool has_many = std::max(required, options.count.value_or(0)) > most_one_by_one;
-  return has_many ? sites_of_many : usual_sites;
+  return options.count || required > most_one_by_one ? sites_of_many : usual_sites;
 }
 
 // Refuses too few cones if cuts cannot reach further sites.

@@ -33,8 +33,8 @@ constexpr PlacementEffort usual_effort{48, 2, {2, 0.998}};
 // For a number of cones, which does not grow in stages; rounding would undo its gain.
 constexpr PlacementEffort thorough_effort{96, 4, {4, 0.9995}};
 
-// Of which cones are chosen, at most, and where these are chosen in batches.
-constexpr int usual_sites = 2000, sites_of_many = 12000;
+// Of which cones are chosen, at most, and where their number is given or large.
+constexpr int usual_sites = 4000, sites_of_many = 12000;
 
 constexpr double isometric_l2 = 1.001;                                        // L2 stretch at which no cone is dropped
 constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  // cones at which sets are exchanged
