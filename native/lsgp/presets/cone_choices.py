@@ -43,9 +43,9 @@ PLACING = 0.6
 _TRYING = 0.5
 # By which a map without creases along the lattice has to be better, where most run along it.
 _WORTH_OF_DIRECTION = 0.15
-# Of the islands of one map, what is expected of another: the mean over 80 meshes.
+# Of the islands of one map, what is hoped of another; over 88 pairs of maps the mean is 0.95.
 _ISLANDS_OF_OTHERS = 0.75
-# Of the stretch that cones are placed for, what low stretch leaves: at most, of nine maps of ten.
+# Of the stretch that cones are placed for, what low stretch leaves: 0.25 to 0.57 on 22 meshes.
 _LOW_STRETCH = 0.5
 # What tells that a component is not symmetric.
 _ODD = "NOT_SYMMETRIC"
