@@ -181,7 +181,10 @@ class _ConeChoice:
             self._made[name] = made, found
             return found
 
-        return Candidate(name, expected, make, quality)
+        def name_of(made: MapThrough) -> str:
+            return name if self._alike is not None or not self._tries_symmetric else "usual cones"
+
+        return Candidate(name, expected, make, quality, name_of)
 
     def _expected_of_symmetric(self) -> float:
         return 0.0

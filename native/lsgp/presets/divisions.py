@@ -17,7 +17,7 @@ from .objective import Candidate, Objective
 
 # Where the square stays empty, islands are divided as if they had so many of them.
 _SQUARES = 2.0
-# What is expected of other divisions: about the medians of 172. Further ones fill more, up to what so many islands fill.
+# What is expected of other divisions: about the medians of 172. Further ones fill more, up to so much of the square.
 _ISLANDS_OF_MORE, _FILLED_BY_MORE, _MOST_FILLED = 1.4, 1.15, {"sparing": 0.55, "full": 0.72}
 _ISLANDS_OF_LESS, _FILLED_BY_LESS = 0.6, {"sparing": 0.7, "full": 0.85}
 

@@ -108,13 +108,15 @@ class Candidate(Generic[T]):
     """One of several maps to choose from.
 
     name: for the trace. expected: what it will cost, told without a map, from those made so far; None where it cannot
-    be made, or is one of them. make: raises LsgpError where it cannot be made. quality: what came out.
+    be made, or is one of them. make: raises LsgpError where it cannot be made. quality: what came out. name_of: another
+    name, by what came out.
     """
 
     name: str
     expected: Callable[[], float | None]
     make: Callable[[Progress | None], T]
     quality: Callable[[T, Progress | None], Quality]
+    name_of: Callable[[T], str] | None = None
 
 
 class Objective:
@@ -210,7 +212,8 @@ class Objective:
             is_best = own[:2] < rank[:2] or (own[:2] == rank[:2] and cost < rank[2] - _ROUNDING)
             if is_best:
                 best, rank = made, own
-            self.note(candidate.name, quality, estimate, is_best=is_best)
+            name = candidate.name if candidate.name_of is None else candidate.name_of(made)
+            self.note(name, quality, estimate, is_best=is_best)
         for candidate, estimate in zip(waiting, (one.expected() for one in waiting), strict=True):
             if estimate is not None:
                 self.choices.append(Choice(candidate.name, estimate, None, "is expected to cost more"))
