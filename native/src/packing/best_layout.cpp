@@ -92,7 +92,10 @@ class Given {
   }
 
  private:
-  static Complex corner_of(int tile) { return Complex(tile % tiles_in_row, tile / tiles_in_row); }
+  static Complex corner_of(int tile) {
+    const int row = tile / tiles_in_row;
+    return Complex(tile % tiles_in_row, row);
+  }
 
   double unit() const { return options_.fill ? side_ : 1.0; }
 
