@@ -110,8 +110,7 @@ class LowerCost:
     def _costs(self, result: Result) -> tuple[FloatArray, FloatArray]:
         """What each component costs, (c,), but for the square, and its stretch of that."""
         of, weights = self.components, self.objective.weights
-        excess = np.nan_to_num(of.stretches(result), nan=np.inf) - 1
-        stretch = 100 * excess * of.areas() / of.areas().sum()
+        stretch = 100 * of.excess(result)
         islands = weights.islands * of.islands(result) * self._share_of_one(result)
         cuts = weights.cuts * self._lengths(result.cut_edges) + weights.borders * self._lengths(result.borders)
         cones = weights.cones * of.counts(result.cones) * np.sqrt(of.areas() / of.areas().sum())

@@ -92,6 +92,12 @@ class Components:
             sums = [self._sums(self.of_triangle, values) for values in (areas, image, spread)]
             return np.sqrt(sums[2] * sums[1]) / sums[0]
 
+    def excess(self, result: Result) -> FloatArray:
+        """What each component adds to the excess of the L2 stretch over 1, (c,); infinite where one is not solved."""
+        share = self.areas() / self.areas().sum()
+        excess = np.nan_to_num(self.stretches(result), nan=np.inf) - 1
+        return np.where(share > 0, share, 1.0) * np.where(share > 0, excess, 0.0)
+
     def _counts(self, component: NDArray[np.intp]) -> NDArray[np.intp]:
         return np.bincount(component[component >= 0], minlength=self.count)
 

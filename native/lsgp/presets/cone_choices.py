@@ -266,7 +266,7 @@ class _ConeChoice:
         share = of.areas() / of.areas().sum()
         islands = of.islands(result) * min(1.0, FEW_ISLANDS / max(1, quality.islands))
         cuts = of.lengths(result.cut_edges) / math.sqrt(of.areas().sum())
-        stretch = 100 * share * (np.nan_to_num(of.stretches(result), nan=np.inf) - 1)
+        stretch = 100 * of.excess(result)
         costs = stretch + weights.islands * islands + weights.cuts * cuts
         costs += weights.cones * of.counts(result.cones) * np.sqrt(share)
         costs += weights.symmetry * share * (quality.asymmetry > 0)
