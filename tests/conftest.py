@@ -54,6 +54,9 @@ def exact_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
 def few_tries(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tight layouts are looked for with little effort, for tests of what is so after any."""
     monkeypatch.setitem(lsgp.pack_islands.__kwdefaults__, "effort", "quick")
+    efforts = lsgp.presets.auto_unwrap._EFFORTS
+    for preset in efforts:
+        monkeypatch.setitem(efforts, preset, "quick")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
