@@ -18,11 +18,10 @@ from .components import Components, keys_of
 from .map_comparison import (
     has_direction,
     is_as_good,
-    island_count,
     run_along_axes,
     seamless_worth,
 )
-from .objective import ERROR_OF_ESTIMATES, FEW_ISLANDS, Objective, Quality
+from .objective import ERROR_OF_ESTIMATES, Objective, Quality
 
 # More of the square than this is rarely filled.
 _WELL_FILLED = 0.65
@@ -32,8 +31,6 @@ _MOST_L2 = 1.1
 # Of the area, where the mesh is not small: seamless layouts take long, and what is smaller is hardly seen.
 _LEAST_AREA = 0.05
 SMALL_MESH = 5000  # triangles
-# Of the stretch of maps that are the same but for rounding.
-_ROUNDING = 1e-6
 
 
 class BorderGain(Protocol):
@@ -72,11 +69,10 @@ class LowerCost:
         pieces = Components.of(opened).of_triangle
         of_piece = unique_rows(np.stack([of.of_triangle, pieces], axis=1)[(of.of_triangle >= 0) & (pieces >= 0)]).rows
         count = np.bincount(of_piece[:, 0], minlength=of.count)
-        present, stretch = self._costs(usual)
-        expected = 0.1 * stretch + weights.islands * count * self._share_of_one(usual)
-        expected += weights.borders * self._lengths(self.borders)
-        filled = max(self.objective.filled(usual, progress), _ROUNDING)
-        of_square = weights.square * max(0.0, 1 / filled - 1 / _WELL_FILLED)
+        present, stretch = self.objective.costs(of, usual)
+        expected = 0.1 * stretch + self.objective.price_of_island(usual) * count
+        expected += weights.borders * of.lengths(self.borders) / math.sqrt(of.areas().sum())
+        of_square = weights.square * max(0.0, self._quality(usual, progress).empty + 1 - 1 / _WELL_FILLED)
         return (present - expected + of_square * of.areas() / of.areas().sum())[chosen] > -ERROR_OF_ESTIMATES
 
     def gains(self, bordered: Result, usual: Result, chosen: NDArray[np.intp]) -> NDArray[np.bool_]:
@@ -85,7 +81,7 @@ class LowerCost:
         self.objective.note("boundaries at creases", self._quality(bordered, None), is_best=is_best)
         if is_best:
             return np.ones(len(chosen), bool)
-        one, other = (self._costs(result)[0] for result in (bordered, usual))
+        one, other = (self.objective.costs(self.components, result)[0] for result in (bordered, usual))
         return (one < other)[chosen]
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
@@ -99,22 +95,6 @@ class LowerCost:
     def _quality(self, result: Result, progress: Progress | None) -> Quality:
         bordered = replace(self.components.surface, borders=result.borders)
         return self.objective.quality(bordered, result, progress)
-
-    def _share_of_one(self, result: Result) -> float:
-        """What an island counts among those of a map."""
-        return min(1.0, FEW_ISLANDS / max(1, island_count(result)))
-
-    def _lengths(self, edges: IndexArray) -> FloatArray:
-        return self.components.lengths(edges) / math.sqrt(self.components.areas().sum())
-
-    def _costs(self, result: Result) -> tuple[FloatArray, FloatArray]:
-        """What each component costs, (c,), but for the square, and its stretch of that."""
-        of, weights = self.components, self.objective.weights
-        stretch = 100 * of.excess(result)
-        islands = weights.islands * of.islands(result) * self._share_of_one(result)
-        cuts = weights.cuts * self._lengths(result.cut_edges) + weights.borders * self._lengths(result.borders)
-        cones = weights.cones * of.counts(result.cones) * np.sqrt(of.areas() / of.areas().sum())
-        return stretch + islands + cuts + cones, stretch
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ from .map_comparison import (
     runs_along_features,
     worth_along_features,
 )
-from .objective import FEW_ISLANDS, Candidate, Objective, Quality
+from .objective import Candidate, Objective, Quality
 
 MapThrough = tuple[CompletedCones, Result]
 
@@ -262,14 +262,9 @@ class _ConeChoice:
     def _costs(self, name: str) -> FloatArray:
         """What each component costs in a map, (c,), but for the square; infinite with further defects."""
         (_, result), quality = self._made[name]
-        of, weights = self._components, self._objective.weights
-        share = of.areas() / of.areas().sum()
-        islands = of.islands(result) * min(1.0, FEW_ISLANDS / max(1, quality.islands))
-        cuts = of.lengths(result.cut_edges) / math.sqrt(of.areas().sum())
-        stretch = 100 * of.excess(result)
-        costs = stretch + weights.islands * islands + weights.cuts * cuts
-        costs += weights.cones * of.counts(result.cones) * np.sqrt(share)
-        costs += weights.symmetry * share * (quality.asymmetry > 0)
+        of = self._components
+        costs, _ = self._objective.costs(of, result)
+        costs = costs + self._objective.weights.symmetry * of.areas() / of.areas().sum() * (quality.asymmetry > 0)
         return np.where(of.defects(result) > 0, np.inf, costs)
 
 

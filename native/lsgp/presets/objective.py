@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from ..base.arguments import IndexArray, number, refuse
+from ..base.arguments import FloatArray, IndexArray, number, refuse
 from ..base.counted import counted
 from ..base.progress import Progress, Steps, share_of, tell
 from ..errors import Cancelled, InputError, LsgpError
@@ -127,7 +127,7 @@ class Objective:
 
     def __init__(self, weights: Weights, square_share: float = 1.0) -> None:
         self.weights, self._square_share = weights, square_share
-        self._known: list[tuple[Result, Quality]] = []
+        self._known: list[tuple[FloatArray, Quality]] = []  # of maps, by their coordinates
         self.choices: list[Choice] = []
         self._components: Components | None = None  # of the latest surface
         self._bound = math.inf
@@ -137,7 +137,7 @@ class Objective:
     ) -> Quality:
         """Of a map of a surface.  progress: of packing.  Raises Cancelled."""
         for known, found in self._known:
-            if known is result:
+            if known is result.corner_uv:
                 return replace(found, asymmetry=asymmetry)
         of = self._components_of(surface)
         size = math.sqrt(float(of.areas().sum())) or 1.0
@@ -152,13 +152,26 @@ class Objective:
             empty=1 / max(self.filled(result, progress), 1e-3) - 1,
             on_lattice=cost_on_lattice(result),
         )
-        self._known.append((result, found))
+        self._known.append((result.corner_uv, found))
         return replace(found, asymmetry=asymmetry)
 
     def _components_of(self, surface: Surface) -> Components:
         if self._components is None or self._components.surface is not surface:
             self._components = Components.of(surface)
         return self._components
+
+    def costs(self, components: Components, result: Result) -> tuple[FloatArray, FloatArray]:
+        """What each component costs in a map, (c,), but for the square and symmetry, and its stretch of that."""
+        weights, areas = self.weights, components.areas()
+        lengths = weights.cuts * components.lengths(result.cut_edges)
+        lengths += weights.borders * components.lengths(result.borders)
+        stretch = 100 * components.excess(result)
+        costs = stretch + lengths / math.sqrt(areas.sum()) + self.price_of_island(result) * components.islands(result)
+        return costs + weights.cones * components.counts(result.cones) * np.sqrt(areas / areas.sum()), stretch
+
+    def price_of_island(self, result: Result) -> float:
+        """Of one among those of a map."""
+        return self.weights.islands * min(1.0, FEW_ISLANDS / max(1, island_count(result)))
 
     def filled(self, result: Result, progress: Progress | None = None) -> float:
         """The part of its texture that a map fills: packed, or of several squares and seamless layouts the part of the

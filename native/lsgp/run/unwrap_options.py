@@ -522,18 +522,17 @@ def cone_count(args: argparse.Namespace) -> int | None:
 
 def _weights(text: str) -> dict[str, float]:
     """NAME=W,... as a dictionary.  Raises ArgumentTypeError."""
-    names = [field.name for field in fields(Weights)]
     out = {}
     for part in text.split(","):
         name, _, value = part.partition("=")
         try:
             out[name] = float(value)
-        except ValueError:
-            out[name] = math.nan
-        if name not in names or not 0 <= out[name] < math.inf:
+            Weights(**{name: out[name]})
+        except (ValueError, TypeError, InputError) as error:
+            names = ", ".join(field.name for field in fields(Weights))
             raise argparse.ArgumentTypeError(
-                f"'{part}' is no weight; give NAME=W with a number from 0 up, NAME one of {', '.join(names)}"
-            )
+                f"'{part}' is no weight; give NAME=W with a number from 0 up, NAME one of {names}"
+            ) from error
     return out
 
 

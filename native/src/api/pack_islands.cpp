@@ -16,7 +16,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tiles_in_row = 10, most_tiles = 100;  // from UDIM tile 1001 to 1010, and to 1100
+constexpr int most_tiles = 100;  // from UDIM tile 1001 to 1100
 // Of coordinates whose squares do not overflow.
 constexpr int most_exponent = 300;
 
@@ -222,8 +222,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
       if (island[t] < 0 || bodies[body_of[island[t]]].keeps_place) continue;
       const Body& body = bodies[body_of[island[t]]];
       const auto& [tile, factor, shift] = motions[body_of[island[t]]];
-      const int column = tile % tiles_in_row, tile_row = tile / tiles_in_row;
-      const Complex offset = shift + Complex(column, tile_row);
+      const Complex offset = shift + corner_of_tile(tile);
       for (Eigen::Index row = 3 * static_cast<Eigen::Index>(t); row < 3 * static_cast<Eigen::Index>(t) + 3; ++row) {
         const Complex z = (Complex(scaled(row, 0), scaled(row, 1)) - body.origin) * factor + offset;
         out(row, 0) = packed_unit.back(z.real());

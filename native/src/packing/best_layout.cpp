@@ -15,7 +15,6 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tiles_in_row = 10;
 // Of the side: what coordinates that have been packed and stored may be off.
 constexpr double rounding = 1e-12;
 
@@ -85,18 +84,13 @@ class Given {
       const Box& box = boxes_[tile_[b]];
       const Complex low(box.left, box.bottom), corner(inside_.left, inside_.bottom);
       const Complex shift =
-          is_fixed_ ? bodies_[b].origin - corner_of(tile_[b]) : (bodies_[b].origin - low) / unit() + corner;
+          is_fixed_ ? bodies_[b].origin - corner_of_tile(tile_[b]) : (bodies_[b].origin - low) / unit() + corner;
       out.motions[b] = {tile_[b], 1 / unit(), shift};
     }
     return out;
   }
 
  private:
-  static Complex corner_of(int tile) {
-    const int row = tile / tiles_in_row;
-    return Complex(tile % tiles_in_row, row);
-  }
-
   double unit() const { return options_.fill ? side_ : 1.0; }
 
   // -1: it is in none.
@@ -128,8 +122,8 @@ class Given {
     for (int tile = 0; tile < options_.tiles; ++tile) {
       const Box& box = boxes_[tile];
       if (box.left > box.right) continue;
-      const Complex low = Complex(inside_.left, inside_.bottom) + corner_of(tile);
-      const Complex high = Complex(inside_.right, inside_.top) + corner_of(tile);
+      const Complex low = Complex(inside_.left, inside_.bottom) + corner_of_tile(tile);
+      const Complex high = Complex(inside_.right, inside_.top) + corner_of_tile(tile);
       if (!is_fixed_) {
         side = std::max({side, (box.right - box.left) / (inside_.right - inside_.left),
                          (box.top - box.bottom) / (inside_.top - inside_.bottom)});

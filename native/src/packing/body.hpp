@@ -9,6 +9,14 @@
 
 namespace lsgp {
 
+constexpr int tiles_in_row = 10;  // from UDIM tile 1001 to 1010
+
+// The lower left corner of a tile, in texture coordinates.
+inline Complex corner_of_tile(int tile) {
+  const int row = tile / tiles_in_row;
+  return Complex(tile % tiles_in_row, row);
+}
+
 // How a body is moved: around its origin it is multiplied, and then shifted, in texture coordinates.
 struct BodyMotion {
   int tile = -1;

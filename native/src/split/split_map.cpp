@@ -240,6 +240,10 @@ class WaySearch {
     Division division;
   };
 
+  static void sort_by_cost(Array<Divided>& divided) {
+    std::stable_sort(divided.begin(), divided.end(),
+                     [](const Divided& a, const Divided& b) { return a.division.cost() < b.division.cost(); });
+  }
   static bool is_one(const Divided& divided) { return divided.division.price.islands == 1; }
   // Other islands of a divided map, if that pays.
   void regroup_islands(const Divided& divided, Regrouping steps);
@@ -274,8 +278,7 @@ void WaySearch::divide(const ComponentMap& way, const Array<CutCost>& rules, con
 }
 
 void WaySearch::regroup_divided() {
-  std::stable_sort(waiting_.begin(), waiting_.end(),
-                   [](const Divided& a, const Divided& b) { return a.division.cost() < b.division.cost(); });
+  sort_by_cost(waiting_);
   for (const Divided& divided : waiting_) {
     if (is_one(best_)) break;
     regroup_islands(divided, Regrouping::direct);
@@ -298,10 +301,11 @@ void WaySearch::regroup_islands(const Divided& divided, Regrouping steps) {
 }
 
 ComponentMap WaySearch::best() {
-  std::stable_sort(of_regrouped_.begin(), of_regrouped_.end(),
-                   [](const Divided& a, const Divided& b) { return a.division.cost() < b.division.cost(); });
-  of_regrouped_.resize(std::min(of_regrouped_.size(), most_regrouped));
-  for (const Divided& divided : Array<Divided>(of_regrouped_)) {
+  Array<Divided> direct = std::move(of_regrouped_);
+  of_regrouped_.clear();
+  sort_by_cost(direct);
+  direct.resize(std::min(direct.size(), most_regrouped));
+  for (const Divided& divided : direct) {
     if (is_one(best_)) break;
     if (!is_one(divided)) regroup_islands(divided, Regrouping::detours);
   }
