@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Batches that are killed at random moments and resumed, on this machine and on Dask: nothing is lost or done twice,
-and neither processes nor temporary files stay behind.
+"""Batches that are killed or asked to end at random moments and resumed, on this machine and on Dask: nothing is lost
+or done twice, and neither processes nor temporary files stay behind.
 
 Continuous integration runs a few; LSGP_FULL_SWEEP=1 runs fifty of each kind.
 """
@@ -24,6 +24,7 @@ from pathlib import Path
 import pytest
 from batch_meshes import obj_text, off_text
 from dask_cluster import Cluster
+from lsgp.run.exit_codes import TERMINATED
 from meshes import Mesh, bumpy_sphere, moebius_strip, renumber
 from nightly import EVERYTHING
 
@@ -173,7 +174,7 @@ def killed_and_resumed(
         )
         time.sleep(chance.uniform(0.0, 1.2 * library.seconds))
         kills[chance.choice(list(kills))](process, mark)
-        assert process.wait(300) in (-signal.SIGKILL, 4)
+        assert process.wait(300) in (-signal.SIGKILL, -signal.SIGTERM, TERMINATED, 4)
         wait_until(lambda mark=mark: not processes_with(mark), "processes outlive the run that started them")
         before.append(lines_of(out))
         written = require_kept(out, written) | times_of(out, before[-1])
@@ -205,7 +206,12 @@ def kill_worker(process: subprocess.Popen[bytes], mark: str) -> None:
             os.kill(pid, signal.SIGKILL)
 
 
-LOCAL = {"main": kill_main, "group": kill_group, "worker": kill_worker}
+def ask_main(process: subprocess.Popen[bytes], mark: str) -> None:
+    """As a scheduler does; while Python starts it ends at once."""
+    process.terminate()
+
+
+LOCAL = {"main": kill_main, "group": kill_group, "worker": kill_worker, "asked": ask_main}
 
 
 @pytest.mark.slow
@@ -229,5 +235,12 @@ def test_on_dask(library: Library, cluster: Cluster, tmp_path: Path, seed: int) 
         process.kill()
         wait_until(lambda: not cluster.asset_processes(), "tasks outlive the batch that started them")
 
-    kills = {"client": kill_client, "group": kill_group, "worker": lambda process, mark: cluster.replace_worker(chance)}
+    def ask_client(process: subprocess.Popen[bytes], mark: str) -> None:
+        process.terminate()
+        wait_until(lambda: not cluster.asset_processes(), "tasks outlive the batch that started them")
+
+    def replace_worker(process: subprocess.Popen[bytes], mark: str) -> None:
+        cluster.replace_worker(chance)
+
+    kills = {"client": kill_client, "group": kill_group, "worker": replace_worker, "asked": ask_client}
     killed_and_resumed(library, tmp_path / "out", chance, kills, "--scheduler", cluster.address)

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import signal
 import sys
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from types import FrameType
 
 from ..io.side_files import UsageError
 from ..io.standard_streams import complain, has_no_reader, silence
 
-OK, USAGE, REFUSED, SOME, INTERRUPTED = 0, 2, 3, 4, 130
+OK, USAGE, REFUSED, SOME, INTERRUPTED, TERMINATED = 0, 2, 3, 4, 130, 143
 
 # What they mean, to a run over one file and to a batch.
 OF_A_RUN = {
@@ -19,6 +23,7 @@ OF_A_RUN = {
     REFUSED: "the input was refused, or with --strict its result",
     SOME: "a result that leaves out faces that have an area",
     INTERRUPTED: "interrupted",
+    TERMINATED: "asked to end, as by a scheduler",
 }
 OF_A_BATCH = {
     OK: "all assets have a whole result",
@@ -26,7 +31,19 @@ OF_A_BATCH = {
     REFUSED: "no asset has a result",
     SOME: "some assets have a result, or a result leaves out faces that have an area",
     INTERRUPTED: "interrupted",
+    TERMINATED: "asked to end, as by a scheduler",
 }
+
+# What asks a process to end: a scheduler or the system, and a terminal that is closed.
+REQUESTS = ("SIGTERM", "SIGHUP")
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end; whatever an interrupted run leaves as it was stays as it was."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.code = 128 + number  # as shells say it
 
 
 def listed(meanings: dict[int, str]) -> str:
@@ -37,15 +54,40 @@ def listed(meanings: dict[int, str]) -> str:
 def ended(run: Callable[[], int]) -> int:
     """Run a command and return its exit code; wrong usage, unusable files and interruptions are printed."""
     try:
-        return run()
+        with _requests_heard():
+            return run()
     except UsageError as error:
         complain(f"lsgp: error: {error}")
     except OSError as error:
         complain(f"lsgp: error: {describe(error)}")
+    except Terminated as request:
+        complain("lsgp: asked to end")
+        return request.code
     except KeyboardInterrupt:
         complain("lsgp: interrupted")
         return INTERRUPTED
     return USAGE
+
+
+@contextlib.contextmanager
+def _requests_heard() -> Iterator[None]:
+    """Requests to end are raised as Terminated, but for those that are ignored or that the program hears itself."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        raise Terminated(number)
+
+    if threading.current_thread() is not threading.main_thread():  # in which alone Python hears signals
+        yield
+        return
+    known = [getattr(signal, name) for name in REQUESTS if hasattr(signal, name)]
+    heard = [request for request in known if signal.getsignal(request) == signal.SIG_DFL]
+    for request in heard:
+        signal.signal(request, end)
+    try:
+        yield
+    finally:
+        for request in heard:
+            signal.signal(request, signal.SIG_DFL)
 
 
 def flushed(code: int) -> int:

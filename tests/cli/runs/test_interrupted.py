@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Progress on a terminal, and what an interrupted run leaves behind: files as they were, and exit code 130."""
+"""Progress on a terminal, and what a run leaves behind that is interrupted or asked to end: files as they were, and
+exit code 130 or that of the signal."""
 
 from __future__ import annotations
 
@@ -179,6 +180,57 @@ def test_interrupted_while_writing_leaves_no_half_a_file(
     monkeypatch.setattr(f"lsgp.io.whole_files.{fails}", lambda *paths: signal.raise_signal(signal.SIGINT))
     assert main(BALL) == 130
     assert content(ball_files) == before
+
+
+# Half of a file is written when the process is asked to end.
+ASKED_WHILE_WRITING = """
+import os, signal, sys
+from lsgp import cli
+from lsgp.io import whole_files
+
+def write_half(path, data):
+    with path.open("xb") as file:
+        file.write(data[: len(data) // 2])
+        file.flush()
+        os.kill(os.getpid(), getattr(signal, sys.argv[1]))
+        file.write(data[len(data) // 2 :])
+
+whole_files._write_new = write_half
+sys.exit(cli.main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows sends no such requests")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("in_place", [False, True])
+def test_asked_to_end_while_writing_files_stay_as_they_were(ball_files: Path, name: str, in_place: bool) -> None:
+    (ball_files / "out.obj").write_text("before")
+    before = content(ball_files)
+    command = [*BALL, "-o", "ball.obj", "--in-place"] if in_place else BALL
+    done = subprocess.run(
+        [sys.executable, "-c", ASKED_WHILE_WRITING, name, *command], cwd=ball_files, capture_output=True, text=True
+    )
+    assert done.returncode == 128 + getattr(signal, name)
+    assert (done.stdout, done.stderr) == ("", "lsgp: asked to end\n")
+    assert content(ball_files) == before
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows sends no such requests")
+def test_requests_that_are_ignored_or_heard_by_the_program_are_left_to_it(
+    ball_files: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ball_files)
+    heard = []
+    before = signal.signal(signal.SIGTERM, lambda number, frame: heard.append(number))
+    try:
+        monkeypatch.setattr(
+            "lsgp.run.unwrap_file.read_input", lambda path: [signal.raise_signal(signal.SIGTERM), path.read_bytes()][1]
+        )
+        assert main(BALL) == 0
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert heard == [signal.SIGTERM]
+    assert signal.getsignal(signal.SIGHUP) == signal.SIG_DFL
 
 
 def test_measuring_can_be_interrupted(ball_files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
