@@ -13,14 +13,15 @@ namespace lsgp {
 namespace {
 
 // An eigenvector multiplied by any complex number of modulus 1 is another, and rounding would choose among them: here
-// the position farthest from the origin is put on the positive u axis, the first of those that are equally far but for
-// rounding.
+// the position farthest from the center is turned to the positive u axis, the first of those that are equally far but
+// for rounding. The origin is a vertex among several that are equally good, which rounding chooses as well.
 Eigen::VectorXcd with_fixed_rotation(const Eigen::VectorXcd& position) {
   constexpr double nearly = 1 - 1e-6;
-  const double farthest = position.cwiseAbs().maxCoeff();
+  const Eigen::VectorXcd from_center = position.array() - position.mean();
+  const double farthest = from_center.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
-  while (std::abs(position[first]) < nearly * farthest) ++first;
-  return position * std::polar(1.0, -std::arg(position[first]));
+  while (std::abs(from_center[first]) < nearly * farthest) ++first;
+  return position * std::polar(1.0, -std::arg(from_center[first]));
 }
 
 }  // namespace
