@@ -93,6 +93,15 @@ def test_a_time_out_costs_one_asset(tmp_path: Path) -> None:
     assert "longer than 2 s" in late["message"]
 
 
+@pytest.mark.slow
+def test_an_asset_that_tells_how_far_it_is_has_no_longer_time(tmp_path: Path) -> None:
+    told: list[dict[str, float]] = []
+    (late,) = run_pool(tmp_path, ["slow"], seconds=2.0, tell=told.append)
+    assert late["code"] == "TIMED_OUT"
+    shares = [one["slow.off"] for one in told if one]
+    assert shares == sorted(shares) and 0 < shares[-1] < 1 and len(set(shares)) > 2
+
+
 def test_too_little_memory_costs_one_asset(tmp_path: Path) -> None:
     if not sys.platform.startswith("linux"):
         pytest.skip("memory is limited on Linux only")

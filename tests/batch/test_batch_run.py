@@ -15,6 +15,8 @@ from urllib.parse import unquote
 
 import pytest
 from batch_meshes import off_text
+from lsgp.batch.assets import Asset
+from lsgp.batch.progress import RunProgress
 from lsgp.batch.records import EMPTY
 from lsgp.cli import main
 from meshes import cube, grid, merge, moebius_strip
@@ -237,6 +239,19 @@ def test_names_of_any_kind(batch, lines_in, library: Path) -> None:
     lines = lines_in(library.parent / "out" / "journal.jsonl")
     assert sorted(line["asset"] for line in lines) == sorted([*ASSETS, *odd])
     assert (library.parent / "out" / f"{odd[0]}.obj").is_file()
+
+
+def test_assets_that_are_worked_on_are_part_of_the_progress() -> None:
+    shown: list[tuple[float, str]] = []
+    assets = [Asset("large", Path("large"), 300), Asset("small", Path("small"), 100)]
+    progress = RunProgress(lambda done, note: shown.append((done, note)), assets, [])
+    for shares in ({"large": 0.0}, {"large": 0.5, "small": 0.0}, {"large": 0.5, "small": 1.0}):
+        progress.working(shares)
+    progress({"asset": "small", "status": "ok"})
+    progress({"asset": "large", "status": "refused"})
+    assert [done for done, _ in shown] == [0, 0, 0.375, 0.625, 0.625, 1]
+    assert [note.split(", ")[1] for _, note in shown] == ["0/2"] * 4 + ["1/2", "2/2"]
+    assert all("for 0:00" in note for _, note in shown[:2]) and all("left" in note for _, note in shown[2:])
 
 
 def test_progress_on_a_terminal(library: Path) -> None:

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+from lsgp.base.progress import Progress
 from lsgp.batch.records import Record
 from lsgp.batch.tasks import Settings, Task
 from lsgp.batch.work import unwrap_asset
@@ -18,7 +19,7 @@ from lsgp.batch.worker import serve
 ACCESS_VIOLATION = 0xC0000005 - (1 << 32)
 
 
-def work(task: Task, settings: Settings) -> Record:
+def work(task: Task, settings: Settings, progress: Progress) -> Record:
     if "segfault" in task.asset and os.name == "nt":
         os._exit(ACCESS_VIOLATION)
     if "segfault" in task.asset:
@@ -31,6 +32,9 @@ def work(task: Task, settings: Settings) -> Record:
     if "hang" in task.asset:
         Path(f"{task.input}.pid").write_text(str(os.getpid()))
         time.sleep(600)
+    for tenth in range(10 if "slow" in task.asset else 0):
+        progress(tenth / 10)
+        time.sleep(0.3)
     if "fault" in task.asset:
         raise ZeroDivisionError("by nought")
     if "chatty" in task.asset:
@@ -42,4 +46,4 @@ def work(task: Task, settings: Settings) -> Record:
 if __name__ == "__main__":
     if "does-not-start" in sys.argv:
         sys.exit("there is no library here")
-    serve(work)
+    serve(work, tells=True)

@@ -173,7 +173,7 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
         missing = [asset for asset in assets if asset.name not in ended]
         with ProgressLine(sys.stderr) as line:
             show = RunProgress(line, assets, ended.values())
-            for record in _records(args, missing, settings, kind, cluster):
+            for record in _records(args, missing, settings, kind, cluster, show.working):
                 journal.write(record)
                 ended[record["asset"]] = record
                 show(record)
@@ -253,8 +253,15 @@ def _has_result(out: Path, record: Record, kind: Kind) -> bool:
 
 
 def _records(
-    args: argparse.Namespace, assets: Sequence[Asset], settings: Settings, kind: Kind, cluster: Cluster | None
+    args: argparse.Namespace,
+    assets: Sequence[Asset],
+    settings: Settings,
+    kind: Kind,
+    cluster: Cluster | None,
+    tell: Callable[[dict[str, float]], None],
 ) -> Iterator[Record]:
+    """tell: is told of the parts of assets that are done on this machine, as by `Pool`."""
+
     def task_of(asset: Asset) -> Task:
         return Task.of(asset, args.out, kind.output_name(asset.name))
 
@@ -265,7 +272,7 @@ def _records(
             yield from run_on_cluster(cluster, settings, task_of, assets, args.timeout)
         else:
             jobs = min(args.jobs or _cores(), len(assets))
-            yield from Pool(jobs, settings, task_of, kind.worker, args.timeout).run(assets)
+            yield from Pool(jobs, settings, task_of, kind.worker, args.timeout, tell=tell).run(assets)
     except WorkersError as error:
         raise UsageError(str(error)) from error
 

@@ -27,7 +27,8 @@ class Pool:
     """jobs: processes at a time. task_of: makes the task of an asset. command: starts a worker.
 
     seconds: time limit of an asset, None for no limit. assets_per_worker: a process is replaced after this many assets,
-    which bounds what leaks in long-lived processes. is_wanted: asked every second; the run ends when it says no.
+    which bounds what leaks in long-lived processes. is_wanted: asked every second; the run ends when it says no. tell:
+    is told every second, or sooner, which parts of assets are done, by their names.
     """
 
     def __init__(
@@ -39,6 +40,7 @@ class Pool:
         seconds: float | None = None,
         assets_per_worker: int = ASSETS_PER_WORKER,
         is_wanted: Callable[[], bool] | None = None,
+        tell: Callable[[dict[str, float]], None] | None = None,
     ) -> None:
         self._jobs = jobs
         self._settings = settings
@@ -46,7 +48,7 @@ class Pool:
         self._command = command
         self._seconds = seconds
         self._assets_per_worker = assets_per_worker
-        self._is_wanted = is_wanted
+        self._is_wanted, self._tell = is_wanted, tell
         self._workers: list[WorkerProcess] = []
         self._said: SimpleQueue[tuple[WorkerProcess, Record | None]] = SimpleQueue()
         self._failed_starts = 0
@@ -64,6 +66,8 @@ class Pool:
                     return
                 yield from self._hear(queue)
                 yield from self._end_late_ones(queue)
+                if self._tell is not None:
+                    self._tell({worker.waiting[0].name: worker.share for worker in self._workers if worker.waiting})
         finally:
             for worker in self._workers:
                 worker.end(patience=0)
@@ -88,7 +92,7 @@ class Pool:
     def _hear(self, queue: Queue) -> Iterator[Record]:
         """The records that a worker's next message brings; none when a time limit passes before."""
         left = [worker.seconds_left(self._seconds) for worker in self._workers]
-        if self._is_wanted is not None:
+        if self._is_wanted is not None or self._tell is not None:
             left.append(WANTED_SECONDS)
         first = min((seconds for seconds in left if seconds is not None), default=None)
         try:

@@ -7,6 +7,7 @@ import argparse
 import os
 from pathlib import Path
 
+from ..base.progress import Progress
 from ..errors import LsgpError
 from ..io.side_files import UsageError
 from ..io.whole_files import write_whole
@@ -20,12 +21,12 @@ from .records import FAILED, REFUSED, Record, ending, record_of
 from .tasks import Settings, Task
 
 
-def unwrap_asset(task: Task, settings: Settings) -> Record:
+def unwrap_asset(task: Task, settings: Settings, progress: Progress | None = None) -> Record:
     """Unwrap an asset, write its files, and return its record."""
     run = Run()
     try:
         _require_ordinary(Path(task.input))
-        return _unwrap(task, settings, run)
+        return _unwrap(task, settings, run, progress)
     except LsgpError as error:
         return refusal(error, run)
     except MemoryError:
@@ -50,10 +51,10 @@ def _require_ordinary(path: Path) -> None:
         raise OSError(None, "This is not a regular file", os.fspath(path))
 
 
-def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
+def _unwrap(task: Task, settings: Settings, run: Run, progress: Progress | None) -> Record:
     output = Path(task.out, task.output)
     args = argparse.Namespace(input=Path(task.input), output=output, threads=0, **settings.options_for(task))
-    result = unwrap_file(args, run, makes_folder=True)
+    result = unwrap_file(args, run, progress, makes_folder=True)
     report = reports.unwrap_report(result, run, texture_size(args))
     if settings.reports:
         write_whole(Path(task.out, report_name(task.output)), reports.to_json(report))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import signal
 import socket
@@ -21,16 +22,24 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+from ..base.progress import Progress
 from ..run.report import finite
 from .records import FAILED, Record, ending
 from .tasks import Settings, Task
 
 # Prefix of the protocol's lines; host programs print lines of their own.
 MARK = "\x1elsgp "
+# Key of a message that is no answer yet.
+SHARE = "share"
+# Between two messages of how far an asset is.
+SHARE_SECONDS = 0.5
 
 
-def serve(work: Callable[[Task, Settings], Record]) -> None:
-    """Answer tasks until the input ends, then end the process."""
+def serve(work: Callable[..., Record], *, tells: bool = False) -> None:
+    """Answer tasks until the input ends, then end the process.
+
+    work: on a task, with the settings. tells: whether it also takes a function to be told its progress.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the process that started this one
     # Any other output is redirected to standard error.
     answers = os.dup(1)
@@ -48,12 +57,13 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
         _limit_memory(settings.memory_limit)
     digest = settings.digest()
     _send(answers, {"ready": name})
+    further = (_teller(answers),) if tells else ()
     while True:
         task = Task(**json.loads(lines.get()))
         begin, cpu = time.perf_counter(), time.process_time()
         _forget_peak_memory()
         try:
-            record = work(task, settings)
+            record = work(task, settings, *further)
         except Exception as error:  # any error fails this asset only
             message = f"{type(error).__name__}: {error}. This is a fault of the program; please report it."
             record = ending(FAILED, "INTERNAL_ERROR", message)
@@ -67,6 +77,20 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
             "options": digest,
         }
         _send(answers, record | figures)
+
+
+def _teller(answers: int) -> Progress:
+    """What sends the progress of an asset, now and then."""
+    told = -math.inf
+
+    def tell(done: float) -> None:
+        nonlocal told
+        now = time.monotonic()
+        if now - told >= SHARE_SECONDS:
+            told = now
+            _send(answers, {SHARE: done})
+
+    return tell
 
 
 def _read_lines(descriptor: int, lines: SimpleQueue[bytes]) -> None:
@@ -154,4 +178,4 @@ def _size(path: str) -> int | None:
 if __name__ == "__main__":
     from .work import unwrap_asset
 
-    serve(unwrap_asset)
+    serve(unwrap_asset, tells=True)

@@ -19,7 +19,7 @@ from queue import SimpleQueue
 from .assets import Asset
 from .records import Record
 from .tasks import Settings, Task
-from .worker import MARK
+from .worker import MARK, SHARE
 
 START_SECONDS = 120.0
 END_SECONDS = 10.0
@@ -41,7 +41,8 @@ class WorkersError(Exception):
 
 
 class WorkerProcess:
-    """name: None until it is ready. waiting: the assets it has not answered on; it works on the first of them.
+    """name: None until it is ready. waiting: the assets it has not answered on; it works on the first of them, of which
+    it has done the part `share`, as far as it says so.
 
     answered: number of answers. Its output goes into the queue `said`, None for its end.
     """
@@ -53,6 +54,7 @@ class WorkerProcess:
         self.name: str | None = None
         self.waiting: deque[Asset] = deque()
         self.answered = 0
+        self.share = 0.0
         self._since = time.monotonic()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
         # As many processes as there are cores leave none for threads.
@@ -75,7 +77,10 @@ class WorkerProcess:
             self._send(asdict(task_of(asset)))
 
     def take_in(self, said: Record) -> Record | None:
-        """The record of an asset if that is what it said, None where it is ready now."""
+        """The record of an asset if that is what it said, None where it is ready now or told how far it is."""
+        self.share = said.get(SHARE, 0.0)
+        if SHARE in said:
+            return None
         self._since = time.monotonic()
         if self.name is None:
             self.name = said["ready"]
