@@ -98,6 +98,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"least_share": 0.5, "progress": None},
         },
     ),
+    "find_tubes": (lsgp.find_tubes, {"surface": WHOLE, "cones": BALL.cones, "progress": None}),
     "edge_directions": (lsgp.edge_directions, {"surface": WHOLE, "edges": EDGES[:3], "up": np.array([0.0, 1.0, 0.0])}),
     "feature_edges": (lsgp.feature_edges, {"surface": WHOLE, "angle": 0.3, "seams": True, "borders": True}),
     "cut_costs": (
@@ -113,7 +114,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": WHOLE, "cones": (), "angles": None, "count": 4, "target": 1.05, "lattice": None},
             **{"prefer_sharp": False, "symmetric": True, "mirror": ([0, 0, 0], [1, 0, 0])},
-            **{"follow_strokes": True, "seams": "follow"},
+            **{"follow_strokes": True, "seams": "follow", "border": "strips"},
             "threads": 2,
             "progress": None,
         },
@@ -228,6 +229,7 @@ NOT_CALLED = {
     ),
     *("MovedCut", "Placement", "Prescription", "QuadMesh", "QuadQuality", "QuadRemesh", "ReleasedFeature", "Result"),
     *("RepairReport", "SeamQuality", "SeamlessReport", "Stacks", "TexelDensity", "Transition", "TriangleDistortion"),
+    "Tubes",
 }
 
 

@@ -214,6 +214,12 @@ lsgp::SeamMode to_seam_mode(const std::string& name) {
       name, {{"follow", SeamMode::follow}, {"boundary", SeamMode::boundary}, {"ignore", SeamMode::ignore}});
 }
 
+lsgp::BorderMode to_border_mode(const std::string& name) {
+  using lsgp::BorderMode;
+  return choose<BorderMode>(
+      name, {{"free", BorderMode::free}, {"straight", BorderMode::straight}, {"strips", BorderMode::strips}});
+}
+
 lsgp::Lattice to_lattice(const std::string& name) {
   using lsgp::Lattice;
   return choose<Lattice>(name, {{"square", Lattice::square},
@@ -279,7 +285,7 @@ py::dict to_dict(const lsgp::SeamlessReport& report) {
 lsgp::Options to_options(const py::dict& values) {
   const auto text = [&](const char* field) { return values[field].cast<std::string>(); };
   lsgp::Options options;
-  using lsgp::BorderMode, lsgp::Method, lsgp::PrescriptionRule, lsgp::UnfoldMethod;
+  using lsgp::Method, lsgp::PrescriptionRule, lsgp::UnfoldMethod;
   options.prescription =
       choose<PrescriptionRule>(text("prescription"), {{"least-distortion", PrescriptionRule::least_distortion},
                                                       {"harmonic", PrescriptionRule::harmonic},
@@ -289,7 +295,7 @@ lsgp::Options to_options(const py::dict& values) {
       choose<UnfoldMethod>(text("unfold"), {{"poisson", UnfoldMethod::poisson}, {"spectral", UnfoldMethod::spectral}});
   options.method = choose<Method>(text("method"), {{"lsgp", Method::lsgp}, {"lscm", Method::lscm}});
   options.seams = to_seam_mode(text("seams"));
-  options.border = choose<BorderMode>(text("border"), {{"free", BorderMode::free}, {"straight", BorderMode::straight}});
+  options.border = to_border_mode(text("border"));
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }
@@ -511,6 +517,15 @@ py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const Ind
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
 }
 
+py::typing::Tuple<IndexArray, IndexArray> find_tubes(const SurfaceArrays& surface_arrays, const IndexArray& cones,
+                                                     const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const std::vector<Index> marked = to_vector("cones", cones);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Tubes found = without_gil([&] { return lsgp::find_tubes(surface, marked, tell); });
+  return py::make_tuple(to_array(found.borders), to_array(found.triangles));
+}
+
 py::typing::Tuple<IndexArray, FloatArray> feature_cones(const SurfaceArrays& surface_arrays, bool with_creases,
                                                         const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
@@ -575,6 +590,7 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
   }
   options.follow_strokes = values["follow_strokes"].cast<bool>();
   options.seams = to_seam_mode(values["seams"].cast<std::string>());
+  options.border = to_border_mode(values["border"].cast<std::string>());
   options.threads = values["threads"].cast<int>();
   return options;
 }
@@ -782,6 +798,7 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("find_tubes", &find_tubes, "surface"_a, "cones"_a, "progress"_a);
   module.def("feature_cones", &feature_cones, "surface"_a, "with_creases"_a, "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);
   module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);

@@ -39,6 +39,7 @@ from .api import (
     crease_borders,
     cut_costs,
     find_cuts,
+    find_tubes,
     measure_distortion,
     parameterize,
     place_cones,
@@ -88,6 +89,7 @@ from .results import (
     Result,
     SeamlessReport,
     SeamQuality,
+    Tubes,
 )
 from .stitching import stitch_borders
 from .surface import Pins, Surface
@@ -136,6 +138,7 @@ __all__ = [
     "TopologyError",
     "Transition",
     "TriangleDistortion",
+    "Tubes",
     "Weights",
     "at_texel_density",
     "auto_unwrap",
@@ -151,6 +154,7 @@ __all__ = [
     "feature_edges",
     "find_cuts",
     "find_stacks",
+    "find_tubes",
     "fit_placement",
     "hold_complete",
     "index_uv",

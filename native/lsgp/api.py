@@ -13,7 +13,7 @@ from . import _lsgp
 from .base import arguments
 from .base.arguments import FloatArray, IndexArray
 from .base.progress import Progress
-from .options import Lattice, Options, SeamMode, thread_count
+from .options import BorderMode, Lattice, Options, SeamMode, thread_count
 from .results import (
     ConeGains,
     CutPaths,
@@ -27,6 +27,7 @@ from .results import (
     Result,
     SeamlessReport,
     SeamQuality,
+    Tubes,
 )
 from .surface import Pins, Surface, surface_arrays
 
@@ -232,6 +233,20 @@ def crease_borders(
     return _lsgp.crease_borders(surface_arrays(surface), vertices, (start, marked, corners, share), progress)
 
 
+def find_tubes(surface: Surface, cones: ArrayLike = (), *, progress: Progress | None = None) -> Tubes:
+    """The tubes of components that consist of them for four fifths of their area or more.
+
+    Between its borders a tube unfolds into a strip with `Options.border` "strips". It ends where other faces than quads
+    follow, or where the cone that a ring lies on develops into more than half a disk. A quad is two triangles on both
+    sides of an edge that is not among `Surface.edges`; if that is None, on both sides of the longest edge of both.
+    Components with cones or marked seams have none.
+    progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
+    """
+    arguments.require_callable(progress)
+    vertices = arguments.index_vector("cones", cones)
+    return Tubes(*_lsgp.find_tubes(surface_arrays(surface), vertices, progress))
+
+
 def cut_costs(
     surface: Surface,
     front: ArrayLike | None = None,
@@ -289,6 +304,7 @@ def place_cones(
     mirror: tuple[ArrayLike, ArrayLike] | None = None,
     follow_strokes: bool = True,
     seams: SeamMode = "follow",
+    border: BorderMode = "free",
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Placement:
@@ -309,7 +325,8 @@ def place_cones(
         mirror each other.
     follow_strokes: angles are chosen for several directions, as in `Options`.
     seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
-        component that gets cones is not opened along its seams. threads: as in `Options`.
+        component that gets cones is not opened along its seams. border: as in `Options`; with "strips", rings get
+        no cones. threads: as in `Options`.
     If the surface has cut_costs, cones are placed where cuts reach them cheaply, provided that the stretch stays within
     the target or that of as many cones elsewhere; without `count` there may be a quarter more of them.
     No cone is placed on a boundary, at a vertex that cuts cannot reach, or, if the mesh has room, within two rings of
@@ -326,6 +343,7 @@ def place_cones(
     if lattice is not None:
         arguments.require_choice("lattice", lattice, get_args(Lattice))
     arguments.require_choice("seams", seams, get_args(SeamMode))
+    arguments.require_choice("border", border, get_args(BorderMode))
     options = {
         "count": count,
         "target": arguments.number("target", target, "pass an L2 stretch, a number above 1"),
@@ -335,6 +353,7 @@ def place_cones(
         "mirror": None if mirror is None else _mirror_numbers(mirror),
         "follow_strokes": arguments.flag("follow_strokes", follow_strokes),
         "seams": seams,
+        "border": border,
         "threads": thread_count(threads),
     }
     given = _given_cones(cones, angles)

@@ -325,3 +325,14 @@ class Measurement(EqualByContent, ShortRepr):
     flipped: IndexArray
     cut_edges: IndexArray
     island: IndexArray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tubes(EqualByContent, ShortRepr):
+    """Rings of quads, one after the other, as of pipes, ropes, horns and walls of revolution.
+
+    borders: (b, 2) int32, the edges at which they end, for `Surface.borders`. triangles: (t,) int32, those of tubes.
+    """
+
+    borders: IndexArray
+    triangles: IndexArray

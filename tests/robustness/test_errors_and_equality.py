@@ -74,6 +74,7 @@ def examples() -> list[object]:
         lsgp.place_cones(whole),
         lsgp.cone_gains(whole),
         lsgp.measure_distortion(whole, result.corner_uv),
+        lsgp.find_tubes(surface(meshes.cylinder())),
         lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
         lsgp.find_stacks(result.corner_uv, result.island),

@@ -20,6 +20,7 @@
 #include "lsgp/result.hpp"
 #include "lsgp/solver.hpp"
 #include "lsgp/surface.hpp"
+#include "lsgp/tubes.hpp"
 
 namespace lsgp {
 
@@ -51,6 +52,11 @@ LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences&
 // seams have none, nor have those with curvature off their creases. WRONG_PARAMETER.
 LSGP_API VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones = {},
                                     const CreaseOptions& options = {}, const Progress& progress = {});
+
+// The tubes of components that consist of them for the most part: between their borders they unfold into strips with
+// `BorderMode::strips`. A quad is two triangles on both sides of an edge that is not among `Surface::edges`; where
+// these are all, on both sides of the longest edge of both. Components with cones or seams have none.
+LSGP_API Tubes find_tubes(const Surface& surface, const std::vector<Index>& cones = {}, const Progress& progress = {});
 
 // Cones, with angles, with which features and, if asked for, creases of closed hard surfaces can run along the lines of
 // a square lattice: at their corners, and inside the patches between them as far as Gauss-Bonnet requires. None on

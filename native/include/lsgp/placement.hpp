@@ -22,14 +22,15 @@ struct PlacementOptions {
   // is unusable, the error or finding says how many are placed without a number. None: the fewest that reach the
   // target.
   std::optional<int> count;
-  double target = 1.05;               // L2 stretch of the map
-  std::optional<Lattice> lattice;     // angles are multiples of its rotation, for a seamless layout
-  bool prefer_sharp = false;          // prefer sharp corners to smooth regions if that costs little
-  bool symmetric = false;             // the same cones on both sides of a mirror plane
-  std::optional<MirrorPlane> mirror;  // none: detected for every component
-  bool follow_strokes = true;         // as in Options
-  SeamMode seams = SeamMode::follow;  // a component that gets cones is not opened along its seams
-  int threads = 0;                    // as in Options
+  double target = 1.05;                  // L2 stretch of the map
+  std::optional<Lattice> lattice;        // angles are multiples of its rotation, for a seamless layout
+  bool prefer_sharp = false;             // prefer sharp corners to smooth regions if that costs little
+  bool symmetric = false;                // the same cones on both sides of a mirror plane
+  std::optional<MirrorPlane> mirror;     // none: detected for every component
+  bool follow_strokes = true;            // as in Options
+  SeamMode seams = SeamMode::follow;     // a component that gets cones is not opened along its seams
+  BorderMode border = BorderMode::free;  // strips: rings without marks get no cones
+  int threads = 0;                       // as in Options
 };
 
 struct Placement {

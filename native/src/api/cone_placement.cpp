@@ -53,7 +53,7 @@ class PlacementWork {
   }
   const Mirroring& mirroring_of(const Component& component) { return kept_.mirroring_of(number(component)); }
 
-  // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
+  // Calls visit(component, geometry, task, allowed vertices, findings) for every component.
   template <typename Visit>
   void for_each(Visit visit) {
     Index triangles_before = 0;
@@ -70,7 +70,7 @@ class PlacementWork {
       PerVertex<char> allowed;
       for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
       std::vector<Finding> found;
-      visit(component, geometry, task.cones, allowed, found);
+      visit(component, geometry, task, allowed, found);
       report_border_cones(component, task.border_cones, findings_);
       move_findings(component, found, findings_);
     });
@@ -170,7 +170,8 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
   const LinearAlgebraCounter counter;
   const ThreadCount threads(options.threads);
   const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
-  PlacementWork work({surface, existing, options.seams, more}, known.components, out.warnings, progress);
+  PlacementWork work({surface, existing, options.seams, more, options.border}, known.components, out.warnings,
+                     progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   PerVertex<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
@@ -178,7 +179,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
   Shortfalls shortfalls(options);
   const std::optional<MirrorPlane> plane = mirror_plane(options, work.unit_scale());
   TwinPlacement twins(work.components(), options, plane);
-  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentTask& given,
                     const PerVertex<char>& allowed, std::vector<Finding>& findings) {
     PerVertex<Index> mirrored;
     if (options.symmetric) {
@@ -188,9 +189,12 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
     }
-    const PlacementTask task{{component.mesh, geometry}, cones, allowed, mirrored};
+    const PlacementTask task{{component.mesh, geometry}, given.cones, allowed, mirrored};
+    PlacementOptions of_component = options;
+    if (given.may_be_strip) of_component.count = 0;
     PlacedCones found =
-        place_on({component, task, work.results(component)}, {surface, options, twins, work.monitor()}, findings);
+        place_on({component, task, work.results(component)}, {surface, of_component, twins, work.monitor()}, findings);
+    found.reached |= given.may_be_strip;
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];
@@ -247,9 +251,10 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
   PlacementWork work({surface, existing, seams, MoreCones::some}, components, out.warnings, progress);
   out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
-  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentTask& given,
                     const PerVertex<char>& allowed, std::vector<Finding>&) {
-    const ComponentGains gains = component_gains({{component.mesh, geometry}, cones, allowed, {}}, work.monitor());
+    const ComponentGains gains =
+        component_gains({{component.mesh, geometry}, given.cones, allowed, {}}, work.monitor());
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       if (!std::isnan(gains.predicted_l2[v])) out.predicted_l2[component.source_vertex[v]] = gains.predicted_l2[v];
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lsgp/crease_borders.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -19,16 +18,6 @@
 #include "pipeline/wording.hpp"
 
 namespace lsgp {
-
-namespace {
-
-// Whether the component has marked cones or seams; those take precedence.
-bool is_marked(const HalfedgeMesh& mesh, const ComponentTask& task) {
-  return !task.cones.vertices.empty() || !task.border_cones.empty() ||
-         std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end();
-}
-
-}  // namespace
 
 VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones, const CreaseOptions& options,
                            const Progress& progress) try {
@@ -57,7 +46,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   for_each_component(components, findings, monitor, [&](std::size_t i) {
     const Component& component = components[i];
     const HalfedgeMesh& mesh = component.mesh;
-    if (!component.orientable || is_marked(mesh, work.tasks[i])) return;
+    if (!component.orientable || work.tasks[i].is_marked(mesh)) return;
     const Geometry geometry = require_geometry(component, findings);
     const Eigen::VectorXd bend = bends(mesh);
     PerHalfedge<char> crease(mesh.halfedge_count(), 0);

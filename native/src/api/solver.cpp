@@ -19,6 +19,7 @@
 #include "pipeline/mapping.hpp"
 #include "pipeline/said_once.hpp"
 #include "pipeline/wording.hpp"
+#include "prescription/strips.hpp"
 #include "seamless/seamless.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
@@ -99,8 +100,10 @@ Result map_components(const KnownSurface& known, const MapRequest& request, cons
       const ProgressMonitor::Stage stage(monitor, "geometry");
       kept.geometry_of(i, result.warnings);
       if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
+      const MetricMesh metric{component.mesh, kept.geometry(i)};
+      if (task.may_be_strip && may_be_straight(metric)) become_strip(work.tasks[i]);
       if (work.tasks[i].has_directed_borders) {
-        free_stretched_borders({component.mesh, kept.geometry(i)}, monitor, work.tasks[i]);
+        free_stretched_borders(metric, monitor, work.tasks[i]);
       }
     }
     ComponentSystem& system = kept.system_of(i, options.factorization);

@@ -47,16 +47,20 @@ bool is_same(const ComponentCones& a, const ComponentCones& b) {
 }
 
 bool is_same(const ComponentTask& a, const ComponentTask& b) {
-  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders, strokes_price] = a;
+  const auto& [cones, border_cones, pinned_corners, importance, directions, has_directed_borders, may_be_strip,
+               is_strip, strokes_price] = a;
   return is_same(cones, b.cones) && border_cones == b.border_cones && pinned_corners == b.pinned_corners &&
          is_equal(importance, b.importance) && is_equal(directions.along_first, b.directions.along_first) &&
          is_equal(directions.along_last, b.directions.along_last) && is_equal(directions.weight, b.directions.weight) &&
-         has_directed_borders == b.has_directed_borders && strokes_price == b.strokes_price;
+         has_directed_borders == b.has_directed_borders && may_be_strip == b.may_be_strip && is_strip == b.is_strip &&
+         strokes_price == b.strokes_price;
 }
 
-// Images say what is symmetric, and strokes are followed by what was placed without regard to them.
+// Images say what is symmetric, strokes are followed by what was placed without regard to them, and what becomes a
+// strip gets no cones by their count.
 bool is_same(const PlacementInput& a, const PlacementInput& b) {
-  const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, threads] = a.options;
+  const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, border, threads] =
+      a.options;
   return is_same(a.existing, b.existing) && a.allowed == b.allowed && a.mirrored == b.mirrored &&
          is_equal(a.directions, b.directions) && count == b.options.count && target == b.options.target &&
          lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp && seams == b.options.seams;

@@ -154,7 +154,7 @@ void ComponentRepair::relax(ComponentMap& map) {
 }
 
 bool ComponentRepair::may_straighten(const ComponentMap& map) const {
-  const bool has_sides = (options_.straighten && !mesh_.closed()) || mesh_.has_features();
+  const bool has_sides = (options_.straighten && !mesh_.closed()) || mesh_.has_features() || task_.is_strip;
   // On a lattice cuts and features have to fit it as well, which is up to the layout.
   const int order = task_.cones.rotation_order;
   const bool is_free = order == 0 || (order == 4 && map.cut_graph.cuts.empty());
@@ -165,11 +165,31 @@ bool ComponentRepair::may_straighten(const ComponentMap& map) const {
 std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
+  if (task_.is_strip && !mesh_.has_features()) return straightened_as_strip(surface, map);
   const SideKinds kinds = options_.straighten && !mesh_.closed() ? SideKinds::with_sides : SideKinds::marked;
   std::optional<StraightSides> sides = sides_to_straighten(surface, map, kinds);
   if (!sides) return std::nullopt;
   return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map, kinds,
                              std::move(*sides));
+}
+
+// All four sides of a strip are features, as they are of no other map of its surface.
+std::optional<ComponentMap> ComponentRepair::straightened_as_strip(const CutSurface& surface, const ComponentMap& map) {
+  HalfedgeMesh marked = mesh_;
+  marked.feature.resize(mesh_.halfedge_count());
+  marked.is_feature_junction.assign(mesh_.vertex_count(), 0);
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) marked.feature[h] = is_open(mesh_, map.cut_mesh, h);
+  for (const Cut& cut : map.cut_graph.cuts) {
+    marked.is_feature_junction[cut.tail] = marked.is_feature_junction[cut.head] = 1;
+  }
+  const CutSurface strip{{marked, geometry_}, map.cut_graph, map.cut_mesh, surface.factor, surface.frame_tree};
+  std::optional<StraightSides> sides = sides_to_straighten(strip, map, SideKinds::marked);
+  if (!sides) return std::nullopt;
+  std::optional<ComponentMap> out =
+      with_straight_sides({strip, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
+                          SideKinds::marked, std::move(*sides));
+  if (out) out->release_reasons.clear();
+  return out;
 }
 
 ParallelTransport ComponentRepair::connection_of(const ComponentMap& map) const {

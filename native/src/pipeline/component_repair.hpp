@@ -69,6 +69,7 @@ class ComponentRepair {
   void twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed, ComponentMap& map);
   void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const;
   CutSurface open(const ComponentMap& map) const;
+  std::optional<ComponentMap> straightened_as_strip(const CutSurface& surface, const ComponentMap& map);
   // The connection that a valid map realizes: the metric's if its rotations match, but rotations about handles may be
   // those of another geometry.
   ParallelTransport connection_of(const ComponentMap& map) const;

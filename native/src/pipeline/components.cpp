@@ -34,7 +34,7 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
   for (std::size_t c = 0; c < components.size(); ++c) {
     const Component& component = components[c];
     ComponentCones& own = tasks[c].cones;
-    own.border = options.border;
+    own.border = options.border == BorderMode::straight ? BorderMode::straight : BorderMode::free;
     if (!open.empty() && open[component.source_triangle.front()]) own.holes = Holes::all;
     if (options.seamless) own.rotation_order = rotation_order(options.seamless->lattice);
     own.loop_turning.resize(component.mesh.boundary_loops.size());
@@ -54,6 +54,8 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
       own.vertices.push_back(v);
       own.angles.push_back(element(cones.angles, cone));
     }
+    tasks[c].may_be_strip =
+        options.border == BorderMode::strips && component.mesh.is_ring() && !tasks[c].is_marked(component.mesh);
   }
   return tasks;
 }
@@ -256,12 +258,18 @@ bool is_flat_along_seams(const HalfedgeMesh& torus) {
 
 }  // namespace
 
+bool ComponentTask::is_marked(const HalfedgeMesh& mesh) const {
+  return !cones.vertices.empty() || !border_cones.empty() ||
+         std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end();
+}
+
 Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings, Work earlier) {
   if (earlier.topology.components.empty()) require_valid(request.surface);
   require_valid(request.surface, request.existing);
   Options options;
   options.prescription = PrescriptionRule::manual;
   options.seams = request.seams;
+  options.border = request.border;
   Work work = std::move(earlier);
   divide({request.surface, request.existing, options}, request.more, findings, work);
   findings.insert(findings.end(), work.found.begin(), work.found.end());
@@ -280,6 +288,11 @@ Work prepare(const Request& request, std::vector<Finding>& findings, const Pins&
   hand_out_importance(surface.importance, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
   hand_out_directions(surface.directions, options, work);
+  for (ComponentTask& task : work.tasks) {
+    const auto is_given = [](const std::optional<double>& turning) { return turning.has_value(); };
+    const PerLoop<std::optional<double>>& turning = task.cones.loop_turning;
+    task.may_be_strip &= task.pinned_corners.empty() && std::none_of(turning.begin(), turning.end(), is_given);
+  }
   findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;
 }
@@ -312,11 +325,16 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
   return true;
 }
 
+void become_strip(ComponentTask& ring) {
+  ring.is_strip = true;
+  std::fill(ring.cones.loop_turning.begin(), ring.cones.loop_turning.end(), 0.0);
+}
+
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {
   const HalfedgeMesh& mesh = component.mesh;
   if (options.seams != SeamMode::follow || !component.orientable || !cones.vertices.empty()) return false;
   // Straight boundaries need corners, which pieces would not have, and tiles continue across seams.
-  if (!mesh.closed() && (options.border != BorderMode::free || options.seamless)) return false;
+  if (!mesh.closed() && (options.border == BorderMode::straight || options.seamless)) return false;
   bool has_seam = false;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) has_seam |= mesh.seam[h] && mesh.twin[h] != none;
   return has_seam && !(mesh.closed() && mesh.euler == 0 && is_flat_along_seams(mesh));

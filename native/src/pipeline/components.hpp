@@ -25,7 +25,12 @@ struct ComponentTask {
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
   bool has_directed_borders = false;                // whose turning follows directions, not the surface
+  bool may_be_strip = false;                        // a ring without marks, if that hardly stretches it more
+  bool is_strip = false;                            // and it does not: straight between its boundaries
   std::optional<double> strokes_price;              // of missing directions in choices; none: they have no effect
+
+  // Whether there are marked cones or seams, which have precedence over what is found.
+  bool is_marked(const HalfedgeMesh& mesh) const;
 
   // What choices follow, or none.
   std::optional<FollowedStrokes> strokes() const {
@@ -73,6 +78,7 @@ struct PlacementRequest {
   const Cones& existing;  // given angles are kept
   SeamMode seams;
   MoreCones more;
+  BorderMode border = BorderMode::free;
 };
 Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings, Work earlier = {});
 
@@ -87,6 +93,9 @@ Positions directions_on(const Component& component, const Positions& directions)
 // free). Returns whether it does.
 bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int rotation_order,
                            std::optional<double> curvature, ComponentCones& cones);
+
+// Makes a component a strip: neither of its boundaries turns.
+void become_strip(ComponentTask& ring);
 
 // Whether the component is opened along its followed seams because it has no cones.
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/thread_team.hpp"
+#include "cut/cut_across.hpp"
 #include "cut/mirrored_cuts.hpp"
 #include "systems/stiffness.hpp"
 
@@ -44,7 +45,13 @@ const CutGraph& ComponentSystem::straight_cuts() {
 }
 
 CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const {
-  return connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
+  // Of straight cuts: a tight bend is so much longer outside than inside.
+  constexpr double most_cost = 3;
+  CutGraph usual = connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
+  if (!interior_cones.empty() || usual.cuts.size() != 1 || !surface_.mesh.is_ring()) return usual;
+  std::optional<CutGraph> straight = cut_across(surface_);
+  return straight && cost_of(surface_, *straight) <= most_cost * cost_of(surface_, usual) ? std::move(*straight)
+                                                                                          : usual;
 }
 
 bool ComponentSystem::has_all_cuts() {

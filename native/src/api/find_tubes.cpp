@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "assembly/vertex_pairs.hpp"
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "creases/tubes.hpp"
+#include "lsgp/lsgp.hpp"
+#include "pipeline/components.hpp"
+#include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
+
+namespace lsgp {
+
+Tubes find_tubes(const Surface& surface, const std::vector<Index>& cones, const Progress& progress) try {
+  StageSeconds seconds;
+  ProgressMonitor monitor(progress, seconds);
+  require_connectivity(surface);
+  const Cones given{cones, Array<std::optional<double>>(cones.size())};
+  std::vector<Finding> findings;
+  const Work work = prepare({surface, given, Options{}}, findings);
+  const PerComponent<Component>& components = work.topology.components;
+  Tubes out;
+  Array<Index> borders;
+  for_each_component(components, findings, monitor, [&](std::size_t i) {
+    const Component& component = components[i];
+    if (!component.orientable || work.tasks[i].is_marked(component.mesh)) return;
+    const Geometry geometry = require_geometry(component, findings);
+    const ComponentTubes tubes = find_component_tubes({component.mesh, geometry});
+    append_ends(component, tubes.is_end, borders);
+    for (const Index f : tubes.triangles) out.triangles.push_back(component.source_triangle[f]);
+  });
+  sort_unique(out.triangles);
+  out.borders = to_vertex_pairs(borders);
+  monitor.advance(1);
+  return out;
+} catch (const Error& error) {
+  throw in_words(error);
+}
+
+}  // namespace lsgp

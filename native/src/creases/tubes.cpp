@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "creases/tubes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "cut/cut_cost.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double least_share = 0.8;  // of a component's area, of tubes: more than four sides of a cube
+constexpr double steepest = 0.5;     // the sine of half a cone's angle: half a disk
+
+// Two triangles; sides counter-clockwise.
+struct Quad {
+  std::array<Index, 4> side;  // halfedges
+};
+
+// The side of a quad that a halfedge is, as 4 * quad + side; none if it is no side.
+using SideOf = PerHalfedge<Index>;
+
+// The side of each triangle across which it is half of a quad, or none.
+PerTriangle<Index> find_diagonals(const MetricMesh& surface) {
+  const auto& [mesh, geometry] = surface;
+  const auto is_hidden = [&, &mesh = mesh](Index h) { return mesh.twin[h] != none && !mesh.cuttable[h]; };
+  bool has_hidden = false;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) has_hidden |= is_hidden(h);
+  PerTriangle<Index> out(mesh.triangle_count(), none);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    Index longest = 3 * f;
+    int hidden = 0;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      if (is_hidden(h)) out[f] = h;
+      hidden += is_hidden(h);
+      if (geometry.length[h] > geometry.length[longest]) longest = h;
+    }
+    if (hidden > 1) out[f] = none;  // of a polygon with more sides
+    if (!has_hidden) out[f] = longest;
+  }
+  return out;
+}
+
+Array<Quad> find_quads(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const PerTriangle<Index> diagonal = find_diagonals(surface);
+  Array<Quad> out;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Index here = diagonal[f], there = here == none ? none : mesh.twin[here];
+    if (there <= here || diagonal[there / 3] != there) continue;  // none is the least
+    out.push_back({{next(here), prev(here), next(there), prev(there)}});
+  }
+  return out;
+}
+
+// Quads one after the other across opposite sides, and the halfedges of its rims.
+struct Ring {
+  Array<Index> quads;
+  std::array<Array<Index>, 2> rim;
+};
+
+// All closed rings, and for every side of a quad the ring whose rim it is on, or none.
+class Rings {
+ public:
+  explicit Rings(const HalfedgeMesh& mesh, const Array<Quad>& quads);
+
+  const Array<Ring>& all() const { return rings_; }
+  // The ring and its rim across a whole rim; none where other faces, or several rings, are there.
+  std::optional<std::pair<Index, int>> across(Index ring, int rim) const;
+
+ private:
+  void add_ring(Index quad, int side);
+  bool is_whole(const Ring& ring) const;
+
+  const HalfedgeMesh& mesh_;
+  const Array<Quad>& quads_;
+  SideOf side_of_;
+  Array<char> is_visited_;     // 2 * quad + direction: sides 0 and 2, or 1 and 3, are crossed
+  PerHalfedge<Index> rim_of_;  // 2 * ring + rim, or none
+  Array<Ring> rings_;
+};
+
+Rings::Rings(const HalfedgeMesh& mesh, const Array<Quad>& quads)
+    : mesh_(mesh),
+      quads_(quads),
+      side_of_(mesh.halfedge_count(), none),
+      is_visited_(2 * quads.size(), 0),
+      rim_of_(mesh.halfedge_count(), none) {
+  const Index count = static_cast<Index>(quads.size());
+  for (Index q = 0; q < count; ++q) {
+    for (int s = 0; s < 4; ++s) side_of_[quads[q].side[s]] = 4 * q + s;
+  }
+  for (Index q = 0; q < count; ++q) {
+    for (const int s : {0, 1}) add_ring(q, s);
+  }
+}
+
+void Rings::add_ring(Index quad, int side) {
+  Ring ring;
+  for (Index at = 4 * quad + side; at != none;) {
+    const Index q = at / 4;
+    const int s = at % 4;
+    if (is_visited_[2 * q + s % 2]) return;  // of an open row
+    is_visited_[2 * q + s % 2] = 1;
+    ring.quads.push_back(q);
+    ring.rim[0].push_back(quads_[q].side[(s + 1) % 4]);
+    ring.rim[1].push_back(quads_[q].side[(s + 3) % 4]);
+    const Index beyond = mesh_.twin[quads_[q].side[(s + 2) % 4]];
+    at = beyond == none ? none : side_of_[beyond];
+    if (at != 4 * quad + side) continue;
+    if (!is_whole(ring)) return;
+    const Index number = static_cast<Index>(rings_.size());
+    for (const int rim : {0, 1}) {
+      for (const Index h : ring.rim[rim]) rim_of_[h] = 2 * number + rim;
+    }
+    rings_.push_back(std::move(ring));
+    return;
+  }
+}
+
+// Whether it crosses no quad twice, and its rims are rings.
+bool Rings::is_whole(const Ring& ring) const {
+  const auto are_distinct = [](Array<Index> some) {
+    const std::size_t count = some.size();
+    sort_unique(some);
+    return some.size() == count;
+  };
+  Array<Index> ends[2];
+  for (const int rim : {0, 1}) {
+    for (const Index h : ring.rim[rim]) ends[rim].push_back(mesh_.origin(h));
+  }
+  return are_distinct(ring.quads) && are_distinct(ends[0]) && are_distinct(ends[1]);
+}
+
+std::optional<std::pair<Index, int>> Rings::across(Index ring, int rim) const {
+  Index found = none;
+  for (const Index h : rings_[ring].rim[rim]) {
+    const Index beyond = mesh_.twin[h];
+    const Index there = beyond == none ? none : rim_of_[beyond];
+    if (there == none || (found != none && there != found)) return std::nullopt;
+    found = there;
+  }
+  if (rings_[found / 2].quads.size() != rings_[ring].quads.size()) return std::nullopt;
+  return std::pair(found / 2, static_cast<int>(found % 2));
+}
+
+// A stack of rings and the halfedges of its ends.
+struct Tube {
+  Array<Index> quads;
+  std::array<Array<Index>, 2> end;
+  double area = 0;
+};
+
+class TubeSearch {
+ public:
+  explicit TubeSearch(const MetricMesh& surface)
+      : surface_(surface), quads_(find_quads(surface)), rings_(surface.mesh, quads_) {}
+
+  const Array<Quad>& quads() const { return quads_; }
+  // Tubes that share no quad, the largest first.
+  Array<Tube> find() const;
+
+ private:
+  double area_of(const Ring& ring) const;
+  bool is_steep(const Ring& ring) const;
+
+  const MetricMesh surface_;
+  const Array<Quad> quads_;
+  const Rings rings_;
+};
+
+double TubeSearch::area_of(const Ring& ring) const {
+  double out = 0;
+  for (const Index q : ring.quads) {
+    out += surface_.geometry.area[quads_[q].side[0] / 3] + surface_.geometry.area[quads_[q].side[2] / 3];
+  }
+  return out;
+}
+
+// The girth of a cone grows by 2 pi times the sine of half its angle for each unit along its side.
+bool TubeSearch::is_steep(const Ring& ring) const {
+  double girth[2] = {0, 0};
+  for (const int rim : {0, 1}) {
+    for (const Index h : ring.rim[rim]) girth[rim] += surface_.geometry.length[h];
+  }
+  const double height = 2 * area_of(ring) / (girth[0] + girth[1]);
+  return std::abs(girth[1] - girth[0]) > steepest * 2 * M_PI * height;
+}
+
+Array<Tube> TubeSearch::find() const {
+  const Array<Ring>& all = rings_.all();
+  Array<char> is_used;
+  for (const Ring& ring : all) is_used.push_back(is_steep(ring));
+  Array<Tube> tubes;
+  for (Index r = 0; r < static_cast<Index>(all.size()); ++r) {
+    if (is_used[r]) continue;
+    is_used[r] = 1;
+    Tube tube;
+    Array<Index> rings{r};
+    bool is_closed = false;
+    for (const int direction : {0, 1}) {
+      Index ring = r;
+      int rim = direction;
+      while (const auto beyond = rings_.across(ring, rim)) {
+        is_closed |= beyond->first == r;
+        if (is_used[beyond->first]) break;
+        ring = beyond->first;
+        rim = 1 - beyond->second;
+        is_used[ring] = 1;
+        rings.push_back(ring);
+      }
+      tube.end[direction] = all[ring].rim[rim];
+    }
+    if (is_closed) continue;  // a torus
+    for (const Index ring : rings) {
+      tube.area += area_of(all[ring]);
+      tube.quads.insert(tube.quads.end(), all[ring].quads.begin(), all[ring].quads.end());
+    }
+    tubes.push_back(std::move(tube));
+  }
+  std::stable_sort(tubes.begin(), tubes.end(), [](const Tube& a, const Tube& b) { return a.area > b.area; });
+  Array<char> is_taken(quads_.size(), 0);
+  Array<Tube> out;
+  for (Tube& tube : tubes) {
+    if (std::any_of(tube.quads.begin(), tube.quads.end(), [&](Index q) { return is_taken[q]; })) continue;
+    for (const Index q : tube.quads) is_taken[q] = 1;
+    out.push_back(std::move(tube));
+  }
+  return out;
+}
+
+}  // namespace
+
+ComponentTubes find_component_tubes(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const TubeSearch search(surface);
+  const Array<Tube> tubes = search.find();
+  double area = 0;
+  for (const Tube& tube : tubes) area += tube.area;
+  ComponentTubes out{PerHalfedge<char>(mesh.halfedge_count(), 0), {}};
+  if (area < least_share * surface.geometry.total_area) return out;
+  for (const Tube& tube : tubes) {
+    for (const Array<Index>& end : tube.end) {
+      for (const Index h : end) {
+        if (may_cut(mesh, h)) out.is_end[h] = out.is_end[mesh.twin[h]] = 1;
+      }
+    }
+    for (const Index q : tube.quads) {
+      for (const int side : {0, 2}) out.triangles.push_back(search.quads()[q].side[side] / 3);
+    }
+  }
+  return out;
+}
+
+}  // namespace lsgp

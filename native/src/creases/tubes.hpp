@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tubes: rings of quads side by side, as of pipes, ropes, horns and walls of revolution.
+#pragma once
+
+#include "base/array.hpp"
+#include "mesh/geometry.hpp"
+
+namespace lsgp {
+
+// The tubes of a component that consists of them for the most part.
+struct ComponentTubes {
+  PerHalfedge<char> is_end;  // on both halfedges of the edges at which they end
+  Array<Index> triangles;    // of tubes
+};
+
+// Between its ends a tube is a ring that unfolds into a strip; what closes it is left to itself.
+//
+// A quad is two triangles on both sides of an edge that no cut may follow; where all edges may be cut, on both sides of
+// the longest edge of both. A ring of quads is closed across opposite sides, and a tube is a stack of rings joined
+// along whole rims. Where the cone that a ring lies on develops into more than half a disk, its inner end is closed
+// better than unrolled: tubes end there.
+ComponentTubes find_component_tubes(const MetricMesh& surface);
+
+}  // namespace lsgp

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Straight cuts across rings.
+#pragma once
+
+#include <optional>
+
+#include "cut/cut_graph.hpp"
+
+namespace lsgp {
+
+// The cheapest edge path from one boundary of a ring to the other that goes straight ahead at every vertex, as the rows
+// of a mesh of quads do. None where there is no such path.
+std::optional<CutGraph> cut_across(const MetricMesh& ring);
+
+// Of all cuts, with the given costs.
+double cost_of(const MetricMesh& surface, const CutGraph& cut_graph);
+
+}  // namespace lsgp

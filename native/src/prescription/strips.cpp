@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/strips.hpp"
+
+#include "prescription/log_scale.hpp"
+
+namespace lsgp {
+
+namespace {
+
+double predicted_l2(const MetricMesh& ring, const BorderConditions& border) {
+  const LogScale scale(ring, border);
+  return scale.predicted_l2(scale.evaluate({}));
+}
+
+}  // namespace
+
+bool may_be_straight(const MetricMesh& ring) {
+  constexpr double most_growth = 1.01;  // of L2 stretch: hardly visible
+  return predicted_l2(ring, straight_border(ring, {})) <= most_growth * predicted_l2(ring, free_border(ring.mesh, {}));
+}
+
+}  // namespace lsgp

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tubes are found by their rings of quads, and unfold into strips between their borders."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import surface
+from meshes import Mesh
+from zoo.swept import circle, pipe, sweep
+
+STRIPS = lsgp.Options(mode="low-stretch", border="strips")
+
+
+def of_quads(mesh: Mesh, quads: int) -> lsgp.Surface:
+    """The first triangles are halves of quads: those of the first half, then the others in the same order."""
+    diagonals = np.sort(mesh.triangles[:quads][:, [0, 2]], axis=1)
+    edges = meshes.edges_of(mesh.triangles)
+    is_diagonal = (edges[:, None] == diagonals[None]).all(axis=2).any(axis=1)
+    return surface(mesh, edges=edges[~is_diagonal])
+
+
+def of_pipe(around: int, along: int, bend: float, caps: bool) -> lsgp.Surface:
+    return of_quads(pipe(around, along, bend, caps), around * along)
+
+
+def horn(around: int, along: int, taper: float) -> lsgp.Surface:
+    """A straight tube whose radius shrinks from 1 to `taper`."""
+    mesh = sweep(np.linspace([0, 0, 0], [0, 0, 5], along + 1), circle(1, around), closed=False, caps=False)
+    scale = 1 - (1 - taper) * mesh.positions[:, 2:] / 5
+    return of_quads(
+        mesh._replace(positions=mesh.positions * np.concatenate([scale, scale, scale**0], 1)), around * along
+    )
+
+
+def unwrapped(mesh: lsgp.Surface) -> tuple[lsgp.Surface, lsgp.Result]:
+    """Through no cones, ending where tubes end."""
+    ending = replace(mesh, borders=lsgp.find_tubes(mesh).borders)
+    return ending, lsgp.parameterize(ending, [], None, STRIPS)
+
+
+def sides_off_rectangle(mesh: lsgp.Surface, result: lsgp.Result, triangles: np.ndarray) -> float:
+    """What the box of an island has in area, beyond the island itself: 0 only of rectangles along the axes."""
+    uv = result.corner_uv[triangles]
+    one, other = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+    area = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]).sum() / 2
+    return float(np.ptp(uv[..., 0]) * np.ptp(uv[..., 1]) / area - 1)
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.7, 1.5])
+@pytest.mark.parametrize("caps", [False, True])
+@pytest.mark.parametrize(("around", "along"), [(6, 20), (12, 40), (17, 30)])
+def test_a_pipe_is_a_rectangle_and_its_caps(around: int, along: int, bend: float, caps: bool) -> None:
+    mesh = of_pipe(around, along, bend, caps)
+    tubes = lsgp.find_tubes(mesh)
+    wall = 2 * around * along
+    np.testing.assert_array_equal(tubes.triangles, np.arange(wall))
+    rims = np.concatenate([np.arange(around), np.arange(along * around, (along + 1) * around)])
+    np.testing.assert_array_equal(np.unique(tubes.borders), rims if caps else np.empty(0))
+    _, result = unwrapped(mesh)
+    assert result.distortion.l2_stretch < 1.05
+    assert len(np.unique(result.island)) == (3 if caps else 1)
+    assert sides_off_rectangle(mesh, result, np.arange(wall)) < 1e-6
+    assert not len(result.flipped) and not len(result.wrong_angle_sums)
+
+
+@pytest.mark.parametrize(("around", "along"), [(3, 1), (8, 1), (40, 3)])
+def test_a_straight_ring_of_any_height_is_exact(around: int, along: int) -> None:
+    _, result = unwrapped(of_pipe(around, along, 0.0, False))
+    assert abs(result.distortion.l2_stretch - 1) < 1e-9
+
+
+@pytest.mark.parametrize("taper", [0.6, 0.3, 0.1])
+def test_a_horn_tapers_evenly(taper: float) -> None:
+    """It lies on a cone, which unfolds exactly, but not with parallel sides."""
+    mesh = horn(16, 40, taper)
+    _, result = unwrapped(mesh)
+    assert result.distortion.l2_stretch < 1.01
+    assert sides_off_rectangle(mesh, result, np.arange(len(mesh.triangles))) > 0.1
+
+
+def test_the_texture_runs_on_across_the_cut_without_turning() -> None:
+    mesh, result = unwrapped(of_pipe(12, 40, 1.5, False))
+    assert result.seams.sister_ratio_max < 1 + 1e-9 and result.seams.rotation_residual < 1e-9
+    uv = {}
+    turns = []
+    for f, corners in enumerate(mesh.triangles):
+        for c in range(3):
+            tail, head = corners[c], corners[(c + 1) % 3]
+            uv[tail, head] = result.corner_uv[f, (c + 1) % 3] - result.corner_uv[f, c]
+    for (tail, head), here in uv.items():
+        if (head, tail) in uv:
+            turns.append(np.abs(here + uv[head, tail]).max())
+    assert max(turns) < 1e-6
+
+
+def test_triangles_are_halves_of_quads_across_their_longest_edges() -> None:
+    mesh = of_pipe(12, 40, 1.0, True)
+    bare = replace(mesh, edges=None)
+    np.testing.assert_array_equal(lsgp.find_tubes(bare).triangles, lsgp.find_tubes(mesh).triangles)
+    np.testing.assert_array_equal(lsgp.find_tubes(bare).borders, lsgp.find_tubes(mesh).borders)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_order_of_vertices_and_triangles_changes_nothing(seed: int) -> None:
+    mesh = of_pipe(9, 25, 1.0, True)
+    rng = np.random.default_rng(seed)
+    vertex, triangle = rng.permutation(len(mesh.positions)), rng.permutation(len(mesh.triangles))
+    assert mesh.edges is not None
+    other = lsgp.Surface(mesh.positions[np.argsort(vertex)], vertex[mesh.triangles[triangle]], vertex[mesh.edges])
+    tubes, others = lsgp.find_tubes(mesh), lsgp.find_tubes(other)
+    assert set(triangle[others.triangles]) == set(tubes.triangles)
+    pairs = {tuple(sorted(pair)) for pair in vertex[tubes.borders].tolist()}
+    assert {tuple(sorted(pair)) for pair in others.borders.tolist()} == pairs
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [meshes.torus(), meshes.bumpy_sphere(2), meshes.cube(3), meshes.grid(5, 5), meshes.octahedron()],
+    ids=["torus", "sphere", "box", "grid", "octahedron"],
+)
+def test_what_is_no_tube_has_none(mesh: Mesh) -> None:
+    tubes = lsgp.find_tubes(surface(mesh))
+    assert not len(tubes.borders) and not len(tubes.triangles)
+
+
+def test_marked_cones_and_seams_have_precedence() -> None:
+    mesh = of_pipe(12, 40, 1.0, True)
+    seam = mesh.triangles[:1, :2]
+    assert not len(lsgp.find_tubes(mesh, [100]).triangles)
+    assert not len(lsgp.find_tubes(replace(mesh, seams=seam)).triangles)
+    ring = of_pipe(12, 40, 1.5, False)
+    for marked, options in (
+        (ring, replace(STRIPS, loop_turning={0: 0.5})),
+        (replace(ring, seams=seam), STRIPS),
+    ):
+        free = lsgp.parameterize(marked, [], None, replace(options, border="free"))
+        np.testing.assert_array_equal(lsgp.parameterize(marked, [], None, options).corner_uv, free.corner_uv)
+
+
+def test_rings_get_no_cones() -> None:
+    mesh = of_pipe(12, 40, 1.5, True)
+    ending = replace(mesh, borders=lsgp.find_tubes(mesh).borders)
+    placed = lsgp.place_cones(ending, target=1.001, border="strips")
+    assert not len(placed.cones) and placed.reached
+    assert len(lsgp.place_cones(ending, target=1.001).cones) > 0
+
+
+@pytest.mark.parametrize("around", [8, 15])
+def test_a_seamless_strip_goes_around_in_whole_tiles(around: int) -> None:
+    mesh = of_pipe(around, 30, 1.0, False)
+    options = lsgp.Options(border="strips", seamless=lsgp.Seamless(tiles=12))
+    result = lsgp.parameterize(mesh, [], None, options)
+    assert result.seamless is not None
+    rim = result.corner_uv[mesh.triangles < around]
+    girth = max(np.ptp(rim[:, 0]), np.ptp(rim[:, 1]))
+    assert abs(girth - round(girth)) < 1e-6 and round(girth) > 0
