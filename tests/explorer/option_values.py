@@ -28,7 +28,7 @@ OPTIONS: Values = {
     "unfold": ["poisson", "spectral"],
     "method": ["lsgp", "lscm"],
     "seams": ["follow", "boundary", "ignore"],
-    "border": ["free", "straight"],
+    "border": ["free", "straight", "strips"],
     "loop_turning": ["none", "flat", "any", "elsewhere"],
     "seamless": ["none", "asked for"],
     "mode": ["conformal", "low-stretch"],
@@ -65,6 +65,7 @@ PLACEMENT: Values = {
     "symmetric": [False, True],
     "mirror": ["none", "through the middle"],
     "seams": ["follow", "boundary", "ignore"],
+    "border": ["free", "strips"],
     "threads": [0, 1, 3],
 }
 RARE_PLACEMENT: Values = {

@@ -131,7 +131,7 @@ lsgp::Options make_options(Bytes& bytes, const lsgp::Surface& surface) {
   options.unfold = bytes.choice<lsgp::UnfoldMethod>(2);
   if (bytes.once_in(8)) options.method = lsgp::Method::lscm;
   options.seams = bytes.choice<lsgp::SeamMode>(3);
-  options.border = bytes.choice<lsgp::BorderMode>(2);
+  options.border = bytes.choice<lsgp::BorderMode>(3);
   for (int count = bytes.below(8) - 5; count > 0; --count) {
     const Index vertex = bytes.index(surface.positions.rows());
     options.loop_turning.emplace_back(vertex, (bytes.byte() - 64) / 16 * M_PI / 2);

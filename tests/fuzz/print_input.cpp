@@ -104,5 +104,6 @@ void print(const lsgp::PlacementOptions& options) {
     print_rows("mirror_normal", options.mirror->normal.transpose());
   }
   print_choice("seams", static_cast<int>(options.seams));
+  print_choice("border", static_cast<int>(options.border));
   print_choice("follow_strokes", options.follow_strokes);
 }

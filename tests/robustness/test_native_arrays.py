@@ -28,7 +28,7 @@ ARRAYS = surface_arrays(WHOLE)
 CONES, OPTIONS = cone_arrays(BALL.cones, None, lsgp.Options())
 PLACEMENT = {
     **{"count": 4, "target": 1.05, "lattice": None, "prefer_sharp": False, "symmetric": False, "mirror": None},
-    **{"follow_strokes": True, "seams": "follow", "threads": 1},
+    **{"follow_strokes": True, "seams": "follow", "border": "free", "threads": 1},
 }
 PACKING = {
     **{"margin": 0.01, "fill": True, "turns": "any", "effort": "quick", "seconds": None, "area": None, "tiles": 1},

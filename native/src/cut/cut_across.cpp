@@ -36,16 +36,17 @@ Index straight_ahead(const MetricMesh& surface, Index v, Index from) {
   return best;
 }
 
-// From a vertex of the first boundary to the other one; empty where it does not get there.
-Array<Index> path_from(const MetricMesh& surface, Index start) {
+// From a vertex of the first boundary to the other one; empty where it does not get there.  left: edges that all paths
+// may still have.
+Array<Index> path_from(const MetricMesh& surface, Index start, Index& left) {
   const HalfedgeMesh& mesh = surface.mesh;
   Array<Index> out;
-  for (Index h = straight_ahead(surface, start, none); h != none;
-       h = straight_ahead(surface, mesh.target(h), mesh.twin[h])) {
+  for (Index h = straight_ahead(surface, start, none); h != none && left > 0; --left) {
     out.push_back(h);
-    const Index loop = mesh.loop_of_vertex[mesh.target(h)];
-    if (loop == 1) return out;
-    if (loop == 0 || ssize(out) > mesh.vertex_count()) break;
+    const Index v = mesh.target(h);
+    if (mesh.loop_of_vertex[v] == 1) return out;
+    if (mesh.loop_of_vertex[v] == 0) break;
+    h = straight_ahead(surface, v, mesh.twin[h]);
   }
   return {};
 }
@@ -56,8 +57,9 @@ std::optional<CutGraph> cut_across(const MetricMesh& ring) {
   const HalfedgeMesh& mesh = ring.mesh;
   Array<Index> best;
   double least = 0;
+  Index left = mesh.vertex_count();  // rows of quads have no vertex in common
   for (const Index v : mesh.boundary_loops.front()) {
-    Array<Index> path = path_from(ring, v);
+    Array<Index> path = path_from(ring, v, left);
     if (path.empty()) continue;
     double cost = 0;
     for (const Index h : path) cost += cut_cost(ring, h);

@@ -82,6 +82,13 @@ REVIEWED = {
         ),
         ("while (true)", "edges of the cut, each once, to an end or back to the start", SHORT),
     ],
+    "creases/tubes.cpp": [
+        ("for (Index at = 4 * quad + side; at != none;)", "each direction of a quad, once in all", SHORT),
+        ("while (const auto beyond = rings_.across(ring, rim))", "each ring, once in all", SHORT),
+    ],
+    "cut/cut_across.cpp": [
+        ("for (Index h = first;;)", AROUND_A_VERTEX, SHORT),
+    ],
     "creases/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
     "creases/crease_borders.cpp": [
         (
