@@ -325,8 +325,8 @@ def place_cones(
         mirror each other.
     follow_strokes: angles are chosen for several directions, as in `Options`.
     seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
-        component that gets cones is not opened along its seams. border: as in `Options`; with "strips", rings get
-        no cones. threads: as in `Options`.
+        component that gets cones is not opened along its seams. border: as in `Options`; with "strips", tubes
+        between two boundaries get no cones. threads: as in `Options`.
     If the surface has cut_costs, cones are placed where cuts reach them cheaply, provided that the stretch stays within
     the target or that of as many cones elsewhere; without `count` there may be a quarter more of them.
     No cone is placed on a boundary, at a vertex that cuts cannot reach, or, if the mesh has room, within two rings of

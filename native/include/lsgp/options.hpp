@@ -59,7 +59,7 @@ enum class SeamMode {
 enum class BorderMode {
   free,      // angles along boundaries are those of least distortion; a cone there with an angle is a corner
   straight,  // boundaries are straight from marked cone to marked cone
-  strips,  // a ring between two boundaries, without marks, becomes a straight strip if its girth is about the same all
+  strips,  // a tube between two boundaries, without marks, becomes a straight strip if its girth is about the same all
            // along; other boundaries are free
 };
 

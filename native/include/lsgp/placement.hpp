@@ -29,7 +29,7 @@ struct PlacementOptions {
   std::optional<MirrorPlane> mirror;     // none: detected for every component
   bool follow_strokes = true;            // as in Options
   SeamMode seams = SeamMode::follow;     // a component that gets cones is not opened along its seams
-  BorderMode border = BorderMode::free;  // strips: rings without marks get no cones
+  BorderMode border = BorderMode::free;  // strips: tubes between two boundaries get no cones
   int threads = 0;                       // as in Options
 };
 

@@ -11,6 +11,7 @@
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
+#include "creases/tubes.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/mirror.hpp"
 #include "pipeline/said_once.hpp"
@@ -191,10 +192,11 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     }
     const PlacementTask task{{component.mesh, geometry}, given.cones, allowed, mirrored};
     PlacementOptions of_component = options;
-    if (given.may_be_strip) of_component.count = 0;
+    const bool is_unrolled = given.may_be_strip && is_tube(task);
+    if (is_unrolled) of_component.count = 0;
     PlacedCones found =
         place_on({component, task, work.results(component)}, {surface, of_component, twins, work.monitor()}, findings);
-    found.reached |= given.may_be_strip;
+    found.reached |= is_unrolled;
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];

@@ -12,6 +12,7 @@
 #include "assembly/assembly.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/thread_team.hpp"
+#include "creases/tubes.hpp"
 #include "kept/kept_components.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
@@ -101,7 +102,7 @@ Result map_components(const KnownSurface& known, const MapRequest& request, cons
       kept.geometry_of(i, result.warnings);
       if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
       const MetricMesh metric{component.mesh, kept.geometry(i)};
-      if (task.may_be_strip && may_be_straight(metric)) become_strip(work.tasks[i]);
+      if (task.may_be_strip && is_tube(metric) && may_be_straight(metric)) become_strip(work.tasks[i]);
       if (work.tasks[i].has_directed_borders) {
         free_stretched_borders(metric, monitor, work.tasks[i]);
       }

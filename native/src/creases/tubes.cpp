@@ -256,4 +256,11 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
   return out;
 }
 
+bool is_tube(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  if (mesh.genus > 0 || mesh.boundary_loops.size() != 2) return false;
+  const Array<Tube> tubes = TubeSearch(surface).find();
+  return !tubes.empty() && 2 * ssize(tubes.front().quads) == mesh.triangle_count();
+}
+
 }  // namespace lsgp

@@ -21,4 +21,7 @@ struct ComponentTubes {
 // better than unrolled: tubes end there.
 ComponentTubes find_component_tubes(const MetricMesh& surface);
 
+// Whether a component is one tube from one boundary to the other.
+bool is_tube(const MetricMesh& surface);
+
 }  // namespace lsgp

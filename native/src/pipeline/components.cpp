@@ -54,8 +54,7 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
       own.vertices.push_back(v);
       own.angles.push_back(element(cones.angles, cone));
     }
-    tasks[c].may_be_strip =
-        options.border == BorderMode::strips && component.mesh.is_ring() && !tasks[c].is_marked(component.mesh);
+    tasks[c].may_be_strip = options.border == BorderMode::strips && !tasks[c].is_marked(component.mesh);
   }
   return tasks;
 }
@@ -325,9 +324,9 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
   return true;
 }
 
-void become_strip(ComponentTask& ring) {
-  ring.is_strip = true;
-  std::fill(ring.cones.loop_turning.begin(), ring.cones.loop_turning.end(), 0.0);
+void become_strip(ComponentTask& tube) {
+  tube.is_strip = true;
+  std::fill(tube.cones.loop_turning.begin(), tube.cones.loop_turning.end(), 0.0);
 }
 
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {

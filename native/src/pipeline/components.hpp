@@ -25,7 +25,7 @@ struct ComponentTask {
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
   bool has_directed_borders = false;                // whose turning follows directions, not the surface
-  bool may_be_strip = false;                        // a ring without marks, if that hardly stretches it more
+  bool may_be_strip = false;                        // a tube without marks, if that hardly stretches it more
   bool is_strip = false;                            // and it does not: straight between its boundaries
   std::optional<double> strokes_price;              // of missing directions in choices; none: they have no effect
 
@@ -95,7 +95,7 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
                            std::optional<double> curvature, ComponentCones& cones);
 
 // Makes a component a strip: neither of its boundaries turns.
-void become_strip(ComponentTask& ring);
+void become_strip(ComponentTask& tube);
 
 // Whether the component is opened along its followed seams because it has no cones.
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options);

@@ -7,16 +7,16 @@ namespace lsgp {
 
 namespace {
 
-double predicted_l2(const MetricMesh& ring, const BorderConditions& border) {
-  const LogScale scale(ring, border);
+double predicted_l2(const MetricMesh& tube, const BorderConditions& border) {
+  const LogScale scale(tube, border);
   return scale.predicted_l2(scale.evaluate({}));
 }
 
 }  // namespace
 
-bool may_be_straight(const MetricMesh& ring) {
+bool may_be_straight(const MetricMesh& tube) {
   constexpr double most_growth = 1.01;  // of L2 stretch: hardly visible
-  return predicted_l2(ring, straight_border(ring, {})) <= most_growth * predicted_l2(ring, free_border(ring.mesh, {}));
+  return predicted_l2(tube, straight_border(tube, {})) <= most_growth * predicted_l2(tube, free_border(tube.mesh, {}));
 }
 
 }  // namespace lsgp
