@@ -34,7 +34,7 @@ constexpr double worth_moving = 0.99;
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
 constexpr double justified_l2 = 1.01;  // of a map that justifies a cone at every rounded corner
-constexpr double usual_l2 = 1.05;      // of a map that does not justify more cones than the stages have
+constexpr double usual_l2 = 1.05;      // of a map that does not justify more cones than any surface may have
 constexpr double far_from_target = 2;  // of the stretch above 1: other stages are tried where angles are rounded
 constexpr double much_fewer = 0.8;     // of those at cheap sites: so few at any sites are preferred
 
@@ -166,7 +166,7 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::all)) return std::move(*natural);
   if (!best.map.is_valid() && !chooser_.options().lattice) {
     // Far from the target harmonic angles are better than those of the variance, which underrates large scales.
-    VerifiedChoice harmonic = verified(chooser_.choose_harmonically(*std::rbegin(cone_stages)));
+    VerifiedChoice harmonic = verified(chooser_.choose_harmonically(most_on_any));
     if (is_better(harmonic.map, best.map)) best = std::move(harmonic);
   }
   return best;
@@ -178,7 +178,7 @@ void VerifiedPlacement::take_many(VerifiedChoice& best) {
   const int most = chooser_.task().mesh.vertex_count() / least_vertices_a_cone;
   const int present = static_cast<int>(best.cones.vertices.size());
   if (present > 2 * *std::rbegin(cone_stages)) return;
-  double count = std::max(present, *std::rbegin(cone_stages));
+  double count = std::max(present, most_on_any);
   double predicted = best.cones.predicted_l2;
   for (int i = 0; i < most_enlargements && count * more_cones <= most; ++i) {
     count *= more_cones;
@@ -228,7 +228,7 @@ void VerifiedPlacement::add_where_stretched(VerifiedChoice& best, double share) 
     const auto present = static_cast<int>(best.cones.vertices.size());
     const int more = std::max(least_added, present / added_share);
     if (present > most_one_by_one) return;
-    if (present + more > *std::rbegin(cone_stages) && best.map.l2 <= usual_l2) return;
+    if (present + more > most_on_any && best.map.l2 <= usual_l2) return;
     VerifiedChoice found = verified(chooser_.choose_more(best.cones, wanted, more));
     const bool is_enough = found.map.l2 <= chooser_.options().target;
     if (!is_enough && !(found.map.l2 - 1 < share * (best.map.l2 - 1))) return;
@@ -280,7 +280,7 @@ void VerifiedPlacement::take_other_stage(VerifiedChoice& best) {
   const bool tries_all = is_small() && chooser_.options().lattice && is_far;
   const auto present = static_cast<int>(best.cones.vertices.size());
   for (auto stage = std::rbegin(cone_stages); stage != std::rend(cone_stages); ++stage) {
-    if (!tries_all && (!best.map.is_off() || *stage > present)) continue;
+    if (tries_all ? *stage > most_on_any : !best.map.is_off() || *stage > present) continue;
     VerifiedChoice found = verified(chooser_.choose(*stage));
     if (is_better(found.map, best.map)) best = std::move(found);
     monitor_.tick();

@@ -36,12 +36,15 @@ constexpr PlacementEffort thorough_effort{96, 4, {4, 0.9995}};
 // Of which cones are chosen, at most, and where their number is given or large.
 constexpr int usual_sites = 4000, sites_of_many = 12000;
 
-constexpr double isometric_l2 = 1.001;                                        // L2 stretch at which no cone is dropped
-constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  // cones at which sets are exchanged
+constexpr double isometric_l2 = 1.001;  // L2 stretch at which no cone is dropped
+// Cones at which sets are exchanged. Any surface may get as many as `most_on_any`, more of them only those with enough
+// vertices, and more than all stages those that have more curvature.
+constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57, 71, 89, 111};
+constexpr int most_on_any = 57;
 // Within which cones are chosen. Beyond the second, maps begin to miss their prediction; beyond the fourth, many do.
 constexpr double reaches[] = {usual_reach, wider_reach, 1.0, 1.15, 1.6};
 constexpr double price_weights[] = {10, 1};  // that are tried in turn
-constexpr int least_vertices_a_cone = 4;     // of a surface that gets more cones than the stages have
+constexpr int least_vertices_a_cone = 4;     // of a surface that gets more cones than any may
 constexpr int most_one_by_one = 60;          // cones that are chosen one by one, more of them in batches
 
 class ConeChooser {

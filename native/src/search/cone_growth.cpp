@@ -41,6 +41,7 @@ bool ConeGrowth::advance(double target) {
     while (next_stage_ < std::size(cone_stages)) {
       const int stage = cone_stages[next_stage_++], before = set_.cone_count();
       if (stage <= before) continue;
+      if (stage > most_automatic()) break;
       chooser_.search().grow(set_, stage);
       if (set_.cone_count() == before) break;  // no room
       chooser_.search().exchange(set_);
@@ -69,9 +70,11 @@ void ConeGrowth::advance_in_batches(double target) {
   keep_better(chooser_.settled(*batches_));
 }
 
-// Every surface may use all stages; more only if the curvature that Gauss-Bonnet requires has more quarter turns.
+// More than the stages only if the curvature that Gauss-Bonnet requires has more quarter turns.
 int ConeGrowth::most_automatic() const {
-  return std::max(*std::rbegin(cone_stages), static_cast<int>(std::ceil(chooser_.required_count())));
+  const int room = chooser_.task().mesh.vertex_count() / least_vertices_a_cone;
+  const int most = std::clamp(room, most_on_any, *std::rbegin(cone_stages));
+  return std::max(most, static_cast<int>(std::ceil(chooser_.required_count())));
 }
 
 // Among impossible choices, the one with more cones is nearer to a map.

@@ -189,7 +189,7 @@ def test_one_factorization_and_few_back_substitutions() -> None:
 def test_a_target_out_of_reach_is_told() -> None:
     mesh = meshes.bumpy_sphere(2)
     placed = place(mesh, target=1.000001)
-    assert not placed.reached and len(placed.cones) <= 57
+    assert not placed.reached and len(placed.cones) <= max(57, len(mesh.positions) // 4)
     assert only(placed.warnings, "PLACEMENT_NOT_REACHED").elements.indices.tolist() == sorted(placed.cones.tolist())
     assert "PLACEMENT_NOT_REACHED" not in codes(place(mesh, count=4, target=1.000001).warnings)
 
