@@ -61,15 +61,17 @@ def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes
     one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
     normals = _normals(positions, tail, head, face, len(sizes))
     facing = (normals[face[one]] * normals[face[other]]).sum(axis=1)
-    meets = (facing > _FOLDED) & (face[one] != face[other])
-    one, other = one[meets], other[meets]
+    is_bridge = face[one] == face[other]  # from the outline of a face to one of its holes, and back
+    meets = np.where(is_bridge, facing > 0, facing > _FOLDED)  # a face without area has none
+    one, other, is_bridge = one[meets], other[meets], is_bridge[meets]
     pairs = np.stack([np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]])], axis=1)
+    bridged = lowest_linked(np.concatenate([points, pairs[np.tile(is_bridge, 2)]]), len(positions))
     stitched = lowest_linked(np.concatenate([points, pairs]), len(positions))
-    # Vertices of faces that would touch themselves stay what they are.
-    moved = np.isin(face, face[stitched[corners] != closed[corners]])
-    count = [_different(named, corners[moved], face[moved], len(sizes)) for named in (stitched, closed)]
-    kept = np.isin(closed, closed[corners[(count[0] < count[1])[face]]])
-    stitched[kept] = closed[kept]
+    # Vertices of faces that would touch themselves elsewhere stay what they are.
+    moved = np.isin(face, face[stitched[corners] != bridged[corners]])
+    count = [_different(named, corners[moved], face[moved], len(sizes)) for named in (stitched, bridged)]
+    kept = np.isin(bridged, bridged[corners[(count[0] < count[1])[face]]])
+    stitched[kept] = bridged[kept]
     return _with_lines_on_edges(stitched, place, tail, head, is_line[face])
 
 

@@ -47,6 +47,37 @@ def cube(n: int, size: float = 2.0) -> tuple[np.ndarray, Faces]:
     return size * (np.array(list(lattice)) / n - 0.5), faces
 
 
+def perforated_plate(holes: int, corners: int, seed: int = 0) -> tuple[np.ndarray, Faces]:
+    """A closed plate with star-shaped holes through it. Its caps are single faces, in which edges run from the outline
+    to each hole and back, and so name the vertices at their ends twice."""
+    random = np.random.default_rng(seed)
+    turn = -np.pi / 2 - 2 * np.pi * np.arange(corners) / corners
+    points, cap, feet, rings = [[0.0, 0.0]], [0], [], []
+    for hole in range(holes):
+        radii = random.uniform(0.2, 0.45, corners)
+        foot, ring = len(points), list(range(len(points) + 1, len(points) + 1 + corners))
+        around = np.stack([hole + 0.5 + radii * np.cos(turn), 0.5 + radii * np.sin(turn)], axis=1)
+        points += [[hole + 0.5, 0.0], *around.tolist()]
+        cap += [foot, *ring, ring[0], foot]
+        feet.append(foot)
+        rings.append(ring)
+    right = list(range(len(points), len(points) + 3))
+    points += [[holes, 0.0], [holes, 1.0], [0.0, 1.0]]
+    count = len(points)
+    positions = np.concatenate([np.insert(points, 2, height, axis=1) for height in (0.3, 0.0)])
+    faces = [[*cap, *right], [count + vertex for vertex in reversed([*cap, *right])]]
+    for loop in ([0, *feet, *right], *rings):
+        faces += [[a, count + a, count + b, b] for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    return positions, faces
+
+
+def with_own_corners(positions: np.ndarray, faces: Faces) -> tuple[np.ndarray, Faces]:
+    """Every corner of a face has a vertex of its own."""
+    ends = np.cumsum([len(face) for face in faces])
+    corners = np.concatenate(faces)
+    return positions[corners], [part.tolist() for part in np.split(np.arange(len(corners)), ends[:-1])]
+
+
 def cube_corners(positions: np.ndarray) -> list[int]:
     return np.flatnonzero((np.abs(positions) == np.abs(positions).max()).all(axis=1)).tolist()
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
 
 import lsgp as library
@@ -11,7 +12,8 @@ import meshes
 import numpy as np
 import pytest
 from command import uv_of
-from polygon_meshes import obj_text
+from nightly import nightly
+from polygon_meshes import obj_text, perforated_plate, with_own_corners
 
 BALL = meshes.bumpy_sphere(2)
 SOUP = meshes.triangle_soup(BALL)
@@ -107,3 +109,42 @@ def test_each_quad_beside_a_pole_of_many_vertices_is_in_one_piece(lsgp, tmp_path
     x, y = (uv - np.roll(uv, 1, axis=1)).transpose(2, 0, 1)
     doubled_area = x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y
     assert (doubled_area > -1e-12).all(), "no corner turns back"
+
+
+@pytest.mark.parametrize(("holes", "corners"), [(1, 3), (2, 7), (5, 12)])
+def test_faces_with_holes_and_vertices_of_their_own_are_the_whole_surface(
+    tmp_path: Path, holes: int, corners: int
+) -> None:
+    positions, faces = perforated_plate(holes, corners)
+    (tmp_path / "parted.obj").write_text(obj_text(*with_own_corners(positions, faces)))
+    found = library.read_mesh_file(tmp_path / "parted.obj").triangulation.triangles
+    copied = np.concatenate(faces)[found]
+    pairs = np.unique(np.c_[found.ravel(), copied.ravel()], axis=0)
+    assert len(pairs) == len(np.unique(found)) == len(np.unique(copied)) == len(positions)
+    assert meshes.euler_characteristic(found) == 2 - 2 * holes
+
+
+SAMPLE = [("parted.obj", "out.glb", "paint"), ("parted.glb", "out.obj", "bake"), ("parted.obj", "out.obj", "tile")]
+CROSSED = product(("whole.obj", "parted.obj", "parted.glb"), ("out.obj", "out.glb"), ("paint", "bake", "tile"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("source", "target", "preset"), [*SAMPLE, *nightly(*sorted(set(CROSSED) - set(SAMPLE)))])
+def test_faces_with_holes_lie_flat_in_every_format(lsgp, tmp_path: Path, source: str, target: str, preset: str) -> None:
+    positions, faces = perforated_plate(3, 9, 1)
+    (tmp_path / "whole.obj").write_text(obj_text(positions, faces))
+    (tmp_path / "parted.obj").write_text(obj_text(*with_own_corners(positions, faces)))
+    if source.endswith(".glb"):
+        assert lsgp("unwrap", "parted.obj", "-o", source).code == 0
+    done = lsgp("unwrap", source, "-o", target, "--preset", preset, "--report", "report.json")
+    assert done.code == 0, done.err
+    told = {warning["code"] for warning in done.report()["warnings"]}
+    assert told <= {"BORDERS_STITCHED", "CONTENT_NOT_KEPT"}
+    assert done.report()["distortion"]["l2_stretch"] < 1.001, "its caps and its walls can lie flat"
+    file = library.read_mesh_file(tmp_path / target, with_uv=True)
+    surface, uv = file.surface(), file.triangle_uv.astype(float)
+    a, b, c = surface.positions[surface.triangles].transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    x, y = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+    laid = x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0]
+    assert (laid > 0).all() and np.abs(laid / laid.sum() - area / area.sum()).sum() < 0.01

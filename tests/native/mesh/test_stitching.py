@@ -76,13 +76,22 @@ def test_negative_zero_is_the_same_place_and_the_nearest_number_is_not() -> None
     assert np.array_equal(lsgp.stitch_borders(positions, triangles), np.arange(6))
 
 
-def test_no_face_touches_itself_afterward() -> None:
-    # A quad around a slit whose ends are the same vertices twice: a bridge within one face.
+def test_the_bridge_from_the_outline_of_a_face_to_its_hole_closes() -> None:
+    """As where the face names the vertices at its ends twice; what is folded on itself has no area to hold together."""
     ring = np.array(
         [[0, 0, 0], [3, 0, 0], [3, 3, 0], [0, 3, 0], [0, 0, 0], [1, 1, 0], [1, 2, 0], [2, 1, 0], [1, 1, 0]], float
     )
-    polygon = np.arange(9)
-    assert np.array_equal(stitched_vertices(ring, polygon, np.array([9])), np.arange(9))
+    assert stitched_vertices(ring, np.arange(9), np.array([9])).tolist() == [0, 1, 2, 3, 0, 5, 6, 7, 5]
+    there_and_back = ring[[0, 1, 2, 1]]
+    assert np.array_equal(stitched_vertices(there_and_back, np.arange(4), np.array([4])), np.arange(4))
+
+
+def test_no_face_touches_itself_at_a_vertex_afterward() -> None:
+    """A ring whose hole has a corner on its outline, and a triangle in the hole, which joins both its ends."""
+    ring = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [0, 0, 0], [1, 2, 0], [2, 1, 0]]
+    positions = np.array([*ring, [0, 0, 0], [2, 1, 0], [1, 2, 0]], float)
+    stitched = stitched_vertices(positions, np.arange(10), np.array([7, 3]))
+    assert stitched[:7].tolist() == list(range(7)) and stitched[8:].tolist() == [6, 5]
 
 
 def test_what_is_no_array_of_vertices_is_refused() -> None:
