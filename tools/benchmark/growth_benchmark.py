@@ -20,6 +20,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -207,6 +208,31 @@ def family_table(families: list[str], largest: int, limit: float) -> str:
     return "\n".join(lines) + "\n"
 
 
+def merged(old: str, new: str) -> str:
+    """A table of families with the rows of another, which were measured now, in place of its own or after them. Sizes
+    that only one of both has are dashes in the other."""
+    tables = [rows_of(old), rows_of(new)]
+    is_size = [[head.replace(",", "").isdigit() for head in heads] for heads, *_ in tables]
+    sizes = {head for (heads, *_), of_size in zip(tables, is_size, strict=True) for head in compress(heads, of_size)}
+
+    def wide(row: list[str], heads: list[str], of_size: list[bool]) -> list[str]:
+        known = dict(compress(zip(heads, row, strict=True), of_size))
+        others = [cell for cell, is_one in zip(row, of_size, strict=True) if not is_one]
+        in_order = sorted(sizes, key=lambda size: int(size.replace(",", "")))
+        return [*others[:2], *(known.get(size, "-") for size in in_order), *others[2:]]
+
+    found: dict[tuple[str, ...], list[str]] = {}
+    for (heads, _, *rows), of_size in zip(tables, is_size, strict=True):
+        for row in [heads, *rows]:
+            found[tuple(row[:2])] = wide(row, heads, of_size)
+    first, *rest = ("| " + " | ".join(line) + " |\n" for line in found.values())
+    return first + "|---|---|" + "--:|" * (first.count("|") - 3) + "\n" + "".join(rest)
+
+
+def rows_of(table: str) -> list[list[str]]:
+    return [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in table.strip().splitlines()]
+
+
 def family_cells(name: str, how: str, sizes: list[int], limit: float) -> list[str]:
     """The times, their exponent, the memory at the first and the last size that was measured, and its exponent."""
     cells: list[str] = []
@@ -234,7 +260,9 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="name", help=f"of {', '.join(known)}; all by default")
     parser.add_argument("--largest", type=int, default=SIZES[-1], help="triangles of a family")
     parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds of a run of a family")
-    parser.add_argument("--write", action="store_true", help=f"the tables to {PAGE.relative_to(ROOT)}")
+    parser.add_argument(
+        "--write", action="store_true", help=f"the tables to {PAGE.relative_to(ROOT)}, of families the rows measured"
+    )
     parser.add_argument("--measure", nargs=3, metavar=("name", "how", "n"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.measure:
@@ -251,8 +279,8 @@ def main() -> None:
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
         for head, table in tables.items():
-            begin = page.index(head)
-            page = page[:begin] + table + page[page.index("\n\n", begin) + 1 :]
+            begin, end = page.index(head), page.index("\n\n", page.index(head)) + 1
+            page = page[:begin] + (merged(page[begin:end], table) if head == "| family" else table) + page[end:]
         PAGE.write_text(page, encoding="utf-8")
 
 
