@@ -36,7 +36,8 @@ struct PackingOptions {
   bool fill = true;
   IslandTurns turns = IslandTurns::any;
   PackingEffort effort = PackingEffort::good;
-  // How long `best` goes on, seconds, whatever it has found; none: until its own end, which hangs on islands alone.
+  // How long `best` goes on, seconds, but at least until there is the layout of `good`; none: until its own end, which
+  // hangs on islands alone.
   std::optional<double> seconds;
   // Where islands are put. None: the unit square; if islands keep their size and none its place, the smallest square
   // that begins at the origin.

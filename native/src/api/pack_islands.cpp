@@ -58,6 +58,7 @@ void require_length(std::size_t length, Index island_count, const char* what) {
 }
 
 void require_sizes(const PackingOptions& options) {
+  // Rasters have at most 2^10 texels on the side of a square as large as the area: beyond, less than one lies across.
   constexpr double most_aspect = 1 << 20;
   const UvRectangle area = options.area.value_or(UvRectangle{});
   const double width = area.right - area.left, height = area.top - area.bottom;
@@ -136,10 +137,11 @@ Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, 
   std::frexp(largest, &units.given.exponent);
   const UvRectangle area = options.area.value_or(UvRectangle{});
   units.packed.exponent = std::ilogb(std::max(area.right - area.left, area.top - area.bottom));
-  // Islands that lie in tiles or blocks already may stay there.
-  constexpr int near = 6;
-  const bool may_stay =
-      (options.tiles > 1 || options.snap > 0) && std::abs(units.given.exponent - units.packed.exponent) <= near;
+  // Islands that lie in tiles or blocks already may stay there; those of ten tiles in a row are less than 2^4 away.
+  constexpr int exponent_of_row = 4;
+  static_assert(tiles_in_row <= 1 << exponent_of_row);
+  const int away = units.given.exponent - units.packed.exponent;
+  const bool may_stay = (options.tiles > 1 || options.snap > 0) && away <= exponent_of_row && -away <= most_exponent;
   if (!has_place && !has_size && !may_stay) return units;
   // What keeps its place or size has to fit to the area.
   if (units.given.exponent - units.packed.exponent > most_exponent) {

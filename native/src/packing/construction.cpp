@@ -20,8 +20,9 @@ constexpr double cost_of_row = 20, cost_of_look = 2.5, cost_of_pair = 8, cost_of
 // not worth another turn.
 constexpr int most_slides = 6;
 constexpr double longest_slide = 2, least_slide = 0.02;
-// Bodies that are not smaller than this part of the first of their class skip the rows in which that found no room.
-constexpr double class_size = 0.8;
+// Bodies of which neither size nor area is smaller than these parts of those of the first of their class skip the rows
+// in which that found no room.
+constexpr double class_size = 0.8, class_area = 0.65;
 // By so much of a body's extent what is open grows at least where nothing was at first and full rows are skipped: after
 // each step all of it is looked at again.
 constexpr double step_of_many = 0.25;
@@ -65,9 +66,10 @@ class Tile {
   double used_height() const { return used_height_; }
 
   std::optional<Placed> place(const Array<Pose>& poses, int wanted) {
-    const double extent = size_of(poses);
-    if (!options_.skips_full_rows || extent < class_size * class_extent_) {
+    const double extent = size_of(poses), area = area_of(poses);
+    if (!options_.skips_full_rows || extent < class_size * class_extent_ || area < class_area * class_area_) {
       class_extent_ = extent;
+      class_area_ = area;
       first_row_ = 0;
     }
     Candidate best;
@@ -76,7 +78,10 @@ class Tile {
       if (wanted < 0 || p == wanted) searched.push_back({&poses[p], p});
     }
     search_holes(searched, extent, best);
-    if (best.pose < 0) first_row_ = std::max(first_row_, search_inside(searched, best));
+    if (best.pose < 0) {
+      const int full_rows = search_inside(searched, best);
+      if (class_area * area <= class_area_) first_row_ = std::max(first_row_, full_rows);
+    }
     if (best.pose < 0) {
       for (const Searched& one : searched) search_beyond(one, best);
     }
@@ -106,6 +111,15 @@ class Tile {
     double least = std::numeric_limits<double>::infinity();
     for (const Pose& pose : poses) least = std::min(least, pose.width + pose.height);
     return least;
+  }
+
+  // In texels.
+  static double area_of(const Array<Pose>& poses) {
+    double area = 0;
+    if (!poses.empty()) {
+      for (const Span& span : poses[0].footprint.spans()) area += span.end - span.begin;
+    }
+    return area;
   }
 
   Cost cost_of(const Pose& pose, int column, int row) const {
@@ -274,7 +288,7 @@ class Tile {
   StillOutlines still_;
   double used_width_ = 0, used_height_ = 0;
   double open_width_ = 0, open_height_ = 0;  // where bodies lie before it grows; at least what is used
-  double class_extent_ = std::numeric_limits<double>::infinity();
+  double class_extent_ = std::numeric_limits<double>::infinity(), class_area_ = class_extent_;
   double work_ = 0;
   bool has_obstacles_ = false;
   int first_row_ = 0;  // in those before is no room for bodies of the class

@@ -31,7 +31,10 @@ constexpr double most_growth = 4;
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long better orders are looked for at each effort, and then smaller squares, in about nanoseconds.
-constexpr double work_of_orders[]{2e6, 2e7, 1e9}, work_of_separation[]{4e6, 1.2e8, 9e9};
+constexpr double work_of_orders[]{4e6, 2e7, 1e9}, work_of_separation[]{8e6, 1.2e8, 9e9};
+// Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken.
+constexpr double whole_work_from = 10;
+constexpr std::size_t most_quick = 32;
 // Of the seconds that are allowed, for orders.
 constexpr double share_of_orders = 0.1;
 // Of more bodies, overlaps of pairs are not looked at.
@@ -190,7 +193,29 @@ void LayoutSearch::find_first(const Order& order) {
     side = std::max({needed, side, is_complete && grows() ? balanced_side(needed, side) : 0.0}) * growth;
     side = std::min(side, most_side);
   }
-  refuse(order, side);
+  if (!find_fitting_order(order, side)) refuse(order, side);
+}
+
+// Other orders, of those that place most bodies, until one places all; for bodies that keep their size.
+bool LayoutSearch::find_fitting_order(Order order, double side) {
+  if (options_.fill || free_.size() < 2) return false;
+  const auto placed_by = [&](const Attempt& attempt) {
+    return std::count_if(free_.begin(), free_.end(), [&](Index b) { return attempt.found.placed[b].tile >= 0; });
+  };
+  const Budget budget(work_of_orders[static_cast<std::size_t>(options_.effort)], options_.seconds);
+  const double work_before = work_;
+  std::ptrdiff_t most = 0;
+  for (double share = 0; share < 1; share = budget.share(work_ - work_before)) {
+    monitor_.advance(share);
+    Order other = varied(order);
+    Attempt found = attempt(other, side);
+    const std::ptrdiff_t placed = placed_by(found);
+    if (take_if_better(other, std::move(found))) return true;
+    if (placed < most) continue;
+    most = placed;
+    order = std::move(other);
+  }
+  return false;
 }
 
 // The same order in a smaller square.  with_margins_for: the side for which margins have been.
@@ -308,6 +333,25 @@ void LayoutSearch::settle(Constructed& found, double gap) {
   }
 }
 
+// The layout of the earlier search, if that is better and has the same poses.
+void LayoutSearch::take_up_earlier() {
+  if (earlier_ == nullptr || !grows() || options_.snap > 0 || earlier_->now_.texel != now_.texel ||
+      !(earlier_->now_.side < now_.side))
+    return;
+  State there = earlier_->now_;
+  for (const Index b : free_) {
+    const auto& poses = now_.poses[b];
+    int& pose = there.found.placed[b].pose;
+    const Complex turn = earlier_->now_.poses[b][pose].turn;
+    const auto same = std::find_if(poses.begin(), poses.end(), [&](const Pose& one) { return one.turn == turn; });
+    if (same == poses.end()) return;
+    pose = static_cast<int>(same - poses.begin());
+    there.order.pose[b] = pose;
+  }
+  there.poses = std::move(now_.poses);
+  now_ = std::move(there);
+}
+
 // Smaller squares, in which bodies overlap at first.
 void LayoutSearch::separate(const Budget& budget) {
   if (!grows() || options_.snap > 0 || free_.size() > most_separated) return;
@@ -406,36 +450,44 @@ void LayoutSearch::require_enough_blocks() const {
 
 // also_along_axes: bodies that lie along the axes may be turned otherwise, too.
 void LayoutSearch::search(bool also_along_axes) {
+  // Those along the axes have none but for these.
+  constexpr int least_directions = 4;
+  const int directions =
+      also_along_axes && free_.size() <= most_quick ? std::max(directions_, least_directions) : directions_;
   turns_.clear();
-  for (const Body& body : bodies_) turns_.push_back(turns_of(body, directions_, also_along_axes));
+  for (const Body& body : bodies_) turns_.push_back(turns_of(body, directions, also_along_axes));
   find_first(by_size());
   for (const Index b : free_) now_.order.pose[b] = now_.found.placed[b].pose;
   const auto effort = static_cast<std::size_t>(options_.effort);
-  if (free_.size() < 2) return;  // all of its poses have been tried
-  constexpr std::size_t most_quick = 32;
-  if (options_.effort == PackingEffort::quick && free_.size() > most_quick) return;
+  if (free_.size() < 2) return;            // all of its poses have been tried
+  if (!options_.fill && !grows()) return;  // they fit, and get no larger
+  const bool is_quick = options_.effort == PackingEffort::quick;
+  if (is_quick && free_.size() > most_quick) return;
+  const double part_of_work = is_quick ? std::min(static_cast<double>(free_.size()) / whole_work_from, 1.0) : 1.0;
   const auto seconds = [&](double share) {
     return options_.effort == PackingEffort::best && options_.seconds ? std::optional(share * *options_.seconds)
                                                                       : std::nullopt;
   };
   {
     const ProgressMonitor::Interval part(monitor_, 0, share_of_orders);
-    vary_order(Budget(work_of_orders[effort], seconds(share_of_orders)));
+    vary_order(Budget(part_of_work * work_of_orders[effort], seconds(share_of_orders)));
   }
+  take_up_earlier();
   const ProgressMonitor::Interval part(monitor_, share_of_orders, 1);
-  separate(Budget(work_of_separation[effort], seconds(1 - share_of_orders)));
+  separate(Budget(part_of_work * work_of_separation[effort], seconds(1 - share_of_orders)));
 }
 
 // Whether other turns of bodies that lie along the axes may be worth it, as of long strips.
 bool LayoutSearch::is_hardly_filled() const {
   double area = 0;
-  bool any_aligned = false;
+  bool has_other_turns = false;
   for (const Index b : free_) {
     area += bodies_[b].area;
-    any_aligned |= bodies_[b].turns == IslandTurns::any && lies_along_axes(bodies_[b].outline);
+    if (bodies_[b].turns != IslandTurns::any) continue;
+    has_other_turns |= lies_along_axes(bodies_[b].outline) || (directions_ == 0 && free_.size() <= most_quick);
   }
   const double whole = inner_width() * inner_height() * options_.tiles;
-  return any_aligned && area < hardly_filled * whole * now_.side * now_.side;
+  return has_other_turns && area < hardly_filled * whole * now_.side * now_.side;
 }
 
 PackedLayout LayoutSearch::layout() {

@@ -46,6 +46,10 @@ class LayoutSearch {
   // bodies, options: have to live longer. unit: of the lengths of options, for errors.
   LayoutSearch(const Array<Body>& bodies, const PackingOptions& options, double unit, ProgressMonitor& monitor);
 
+  // The layout of another search of the same bodies in the same texels, which lives longer: smaller squares are looked
+  // for from there, unless better orders have a smaller one.
+  void go_on_from(const LayoutSearch& other) { earlier_ = &other; }
+
   // Throws NoRoom, and WRONG_PARAMETER where numbers are too small or blocks too many.
   PackedLayout best();
 
@@ -93,10 +97,12 @@ class LayoutSearch {
   bool is_hardly_filled() const;
   void require_enough_blocks() const;
   void find_first(const Order& order);
+  bool find_fitting_order(Order order, double side);
   double share_of_gaps() const;
   double balanced_side(double needed, double with_margins_for) const;
   void tighten(double with_margins_for);
   void vary_order(const Budget& budget);
+  void take_up_earlier();
   void separate(const Budget& budget);
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
@@ -121,6 +127,7 @@ class LayoutSearch {
   int directions_ = 0;
   int texels_ = 0;  // of the expected side
 
+  const LayoutSearch* earlier_ = nullptr;
   State now_;
   double work_ = 0;  // done so far, as of `Constructed`
   std::mt19937 random_;

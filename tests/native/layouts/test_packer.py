@@ -477,3 +477,47 @@ def test_a_thousand_scraps_are_packed() -> None:
     require_moved_as_wholes(given, uv)
     require_room(given, uv, 1 / 2048)
     assert measured(given.corner_uv, uv, given.island, 1 / 2048).coverage > 0.45
+
+
+def dissected(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """The rectangles that a square of side 8 is cut into along whole numbers, apart from each other."""
+    random = np.random.RandomState(seed)
+
+    def parts(width: int, height: int, cuts: int) -> list[tuple[int, int]]:
+        longer = max(width, height)
+        if cuts == 0 or longer == 1:
+            return [(width, height)]
+        at = random.randint(1, longer)
+        if width == longer:
+            return parts(at, height, cuts - 1) + parts(width - at, height, cuts - 1)
+        return parts(width, at, cuts - 1) + parts(width, height - at, cuts - 1)
+
+    sizes = np.array(parts(8, 8, 3), float)
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])[[[0, 1, 2], [0, 2, 3]]]
+    apart = 10.0 * np.arange(len(sizes))[:, None, None, None]
+    return (corners * sizes[:, None, None] + apart).reshape(-1, 3, 2), np.repeat(np.arange(len(sizes)), 2)
+
+
+def fits(seed: int, effort: str) -> bool:
+    """Whether the pieces of a square of side 8 are placed in one that is hardly larger."""
+    uv, island = dissected(seed)
+    try:
+        packed = lsgp.pack_islands(uv, island, 0.0, fill=False, area=(0, 0, 8.1, 8.1), effort=effort)
+    except lsgp.InputError:
+        return False
+    assert packed.min() >= -ROUNDING and packed.max() <= 8.1 + ROUNDING
+    assert len(overlapping(packed, island)) == 0 and areas(packed).sum() == pytest.approx(64)
+    return True
+
+
+def test_what_keeps_its_size_is_placed_in_other_orders_until_it_fits() -> None:
+    """More of what fits is found with more effort, and all that is found with less."""
+    quick, good = ({seed for seed in range(30) if fits(seed, effort)} for effort in EFFORTS)
+    assert quick < good
+
+
+@pytest.mark.slow
+def test_the_best_layout_within_seconds_is_never_below_a_good_one() -> None:
+    for kind in ("convex", "concave"):
+        good, best = (packed(kind, **how) for how in ({"effort": "good"}, {"effort": "best", "seconds": 0.3}))
+        assert areas(best).sum() >= areas(good).sum() * (1 - ROUNDING)
