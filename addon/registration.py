@@ -38,6 +38,7 @@ from .operators.unwrapping.auto import UV_OT_cone_auto_unwrap
 from .operators.unwrapping.draw_up import MESH_OT_cone_draw_up
 from .operators.unwrapping.from_cones import UV_OT_cone_unwrap
 from .operators.unwrapping.mark_up import MESH_OT_cone_mark_up
+from .operators.unwrapping.pack import UV_OT_cone_pack
 from .overlay import handlers
 from .ui import manual, menus, presets
 from .ui.angle_panel import VIEW3D_PT_cone_angles
@@ -61,6 +62,7 @@ CLASSES = (
     MESH_OT_cone_clear_data,
     UV_OT_cone_auto_unwrap,
     UV_OT_cone_unwrap,
+    UV_OT_cone_pack,
     OBJECT_OT_cone_remesh_to_quads,
     UV_OT_cone_measure,
     UV_OT_cone_texture,

@@ -55,6 +55,7 @@ TEXTURE = "Cone Unwrap Texture"
 
 AUTO_UNWRAP = "uv.cone_auto_unwrap"
 UNWRAP = "uv.cone_unwrap"
+PACK = "uv.cone_pack"
 REMESH_TO_QUADS = "object.cone_remesh_to_quads"
 MARK = "mesh.cone_mark"
 SELECT = "mesh.cone_select"

@@ -10,6 +10,31 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Faces beside a selection, of all objects, whose UVs stay.
+
+    corner_uv: (k, 3, 2) float64, their triangles. size: square root of their area in the world, by density weights.
+    """
+
+    corner_uv: NDArray[np.float64]
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the islands of a selection go.
+
+    others: (k, 3, 2) float64, the triangles that stay beside them. box: (2, 2), the low and the high corner of the
+    rectangle that the islands had; None: they had none. keeps_density: whether their size is that which they are to
+    have, if there is room.
+    """
+
+    others: NDArray[np.float64]
+    box: NDArray[np.float64] | None
+    keeps_density: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Islands:
     """Islands of one mesh that are to be packed.
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -15,6 +16,7 @@ from ..core import native
 from ..core.cone_angles import ConeAngles
 from ..core.errors import Refused
 from ..core.identifiers import SEAM_COST_GROUP
+from ..core.islands import Surroundings
 from ..core.region import Region
 from .angles import angles_in
 from .cones import weights_in
@@ -75,6 +77,31 @@ def read_chosen(obj: bpy.types.Object, faces: Faces) -> tuple[Region, NDArray[np
         whole = build_region(obj, stored, Faces.ALL, Groups(), subdivide(obj, mesh))
         chosen = _chosen_faces(stored, faces, obj.mode)
         return (whole, chosen[whole.triangle_faces]) if chosen.any() else None
+
+
+def read_surroundings(objects: Iterable[bpy.types.Object], faces: Faces) -> Surroundings | None:
+    """The faces of meshes in edit mode that are not asked for; None where all are.  Those without a UV map, and UVs
+    that are not finite, count for nothing."""
+    is_part, corners, size = False, [np.empty((0, 3, 2))], 0.0
+    for obj in objects:
+        if obj.mode != "EDIT":
+            continue
+        with readable_mesh(obj) as mesh:
+            stored = StoredMesh(mesh)
+            chosen = _chosen_faces(stored, faces, obj.mode)
+            is_part |= not chosen.all()
+            if stored.uv is None or chosen.all():
+                continue
+            loops = stored.triangle_loops[~chosen[stored.triangle_faces]]
+            uv, places = stored.uv[loops].astype(np.float64), stored.places[stored.loop_vertices[loops]]
+            kept = np.isfinite(uv).all(axis=(1, 2)) & np.isfinite(places).all(axis=(1, 2))
+            corners.append(uv[kept])
+            first, second = (
+                np.moveaxis(places[kept][:, 1:] - places[kept][:, :1], 1, 0)
+                @ np.array(obj.matrix_world.to_3x3(), np.float64).T
+            )
+            size += np.linalg.norm(np.cross(first, second), axis=1).sum() / 2 * density_weight(obj) ** 2
+    return Surroundings(np.concatenate(corners), float(np.sqrt(size))) if is_part else None
 
 
 def build_region(

@@ -57,6 +57,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator_context = "INVOKE_DEFAULT"
         layout.operator(identifiers.AUTO_UNWRAP)
         layout.operator(identifiers.UNWRAP)
+        layout.operator(identifiers.PACK)
         layout.operator(identifiers.REMESH_TO_QUADS)
         layout.separator()
         layout.operator(identifiers.MARK).clear = False

@@ -58,6 +58,7 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
         column.scale_y = 1.6
         column.operator(identifiers.AUTO_UNWRAP, icon="UV")
         layout.operator(identifiers.UNWRAP)
+        layout.operator(identifiers.PACK)
 
 
 class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):

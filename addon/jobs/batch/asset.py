@@ -22,7 +22,7 @@ from ...core.region import Region
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
 from ..layouts.densities import at_density
-from ..layouts.maps import PackSettings, final_layouts, tiny_findings
+from ..layouts.maps import PackSettings, placed_maps, tiny_findings
 from ..tasks.cuts import cut_choice
 from ..tasks.directions import direction_choice
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
@@ -171,7 +171,9 @@ def _layouts(
             MARGIN if packing is None or packing.margin is None else packing.margin,
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
-        layouts = final_layouts(solved, replace(pack, stack=args.stack))
+        effort = pack.effort if packing is None or packing.effort is None else packing.effort
+        placed = placed_maps(solved, replace(pack, stack=args.stack, effort=effort))
+        layouts = [unwrapped.corner_uv for unwrapped in placed]
     texels, findings = unwrap_options.texel_layout(args), []
     if texels is not None:
         layouts, findings = at_density(solved, layouts, texels, share=args.preset is not None)

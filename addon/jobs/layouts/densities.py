@@ -5,15 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core import native
 from ...core.errors import Refused
+from ...core.islands import Place
 from ..tasks.unwrapping import Unwrapped
-from .packing import pack_at_scale
+from .packing import pack_at_scale, pack_in_place
 
 if TYPE_CHECKING:
     import lsgp
@@ -29,8 +30,9 @@ def packed_at_density(
     layouts: Sequence[FloatArray],
     layout: lsgp.TexelLayout,
     *,
-    turned: bool,
     unit: float,
+    place: Place | None = None,
+    **how: Any,
 ) -> list[FloatArray]:
     """The coordinates of each map, (m, 3, 2), at the density, each island inside one tile with the margin around it.
 
@@ -38,7 +40,8 @@ def packed_at_density(
 
     They lie close together in one tile where they fit, and otherwise in rows in `layout.udim` tiles.
 
-    layouts: of one scale. layout: with udim. turned: whether islands may be. unit, errors: as of `at_density`.
+    layouts: of one scale. layout: with udim. place: of a selection, into which they go. how: as of `packing.pack`.
+    unit, errors: as of `at_density`.
     """
     if any(unwrapped.aspect != 1.0 for unwrapped in solved):
         raise Refused("the image is not square, so its texels have two densities; use a square one")
@@ -48,9 +51,12 @@ def packed_at_density(
         for unwrapped, uv in zip(solved, scaled, strict=True)
     ]
     margin = layout.margin / layout.texture_size
-    packed = pack_at_scale(parts, margin, turned=turned)
-    if packed is None or max(uv.max() for uv in packed) + margin > 1 + ROUNDING:
-        return at_density(solved, layouts, layout, share=True, unit=unit)[0]
+    if place is not None:
+        packed = pack_in_place(parts, margin, place, **how)
+    else:
+        packed = pack_at_scale(parts, margin, **how)
+        if packed is None or max(uv.max() for uv in packed) + margin > 1 + ROUNDING:
+            return at_density(solved, layouts, layout, share=True, unit=unit)[0]
     for unwrapped, uv, at in zip(solved, scaled, packed, strict=True):
         uv[unwrapped.result.solved] = at
     return scaled

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import bpy
@@ -12,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core import native
-from ...core.islands import Islands
+from ...core.errors import object_errors
+from ...core.islands import Islands, Surroundings
 from ...core.text import counted
 from ...mesh import reports
 from ...mesh.uv_write import write_uv
@@ -20,16 +22,21 @@ from ..tasks import cells
 from ..tasks.areas import size_in_texels, total_area
 from ..tasks.directions import drawn_directions
 from ..tasks.summaries import unwrap_summary
-from ..tasks.unwrapping import Unwrapped
+from ..tasks.unwrapping import Unwrapped, UnwrapTask
 from ..uv_maps.texels import map_density
-from . import packing
+from . import in_place, packing
 from .densities import packed_at_density
+from .remembered import unwrap_all_once
 from .stacking import packed_in_stacks
 
 if TYPE_CHECKING:
     import lsgp
 
     from ...core.region import Region
+    from ..tasks.solving import Progress
+
+# Of the time of an unwrap, that of packing.
+_PACKING_SHARE = {"good": 0.2, "best": 0.9}
 
 TEXTURE_SIZE = 1024
 """Side, in texels, of the texture for which errors of seams are reported."""
@@ -42,7 +49,9 @@ class PackSettings:
     margin, turned, udim: as of `packing.pack`; udim not by cells, and islands are not turned where the
     texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
-    islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
+    islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells. effort: as of
+    `lsgp.pack_islands`. surroundings: of a selection that is placed as by `packing.pack_in_place`; None: all faces are
+    unwrapped, or islands are packed as if they were all.
     """
 
     pack: bool
@@ -53,6 +62,8 @@ class PackSettings:
     texels: lsgp.TexelLayout | None = None
     unit: float = 1.0
     stack: str | None = None
+    effort: str = "good"
+    surroundings: Surroundings | None = None
 
 
 def turned_for(regions: Iterable[Region], settings: PackSettings) -> PackSettings:
@@ -60,34 +71,64 @@ def turned_for(regions: Iterable[Region], settings: PackSettings) -> PackSetting
     return replace(settings, turned=all(region.surface.directions is None for region in regions))
 
 
-def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
-    """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused; InputError at a texel
-    density that the tiles do not hold."""
-    return stacked_layouts(solved, settings)[0]
+def unwrap_and_place(
+    settings: PackSettings, tasks: Sequence[UnwrapTask], progress: Progress | None = None
+) -> list[Unwrapped | Exception]:
+    """The maps of all tasks in their final place; an error in place of each that there is none of.  Raises
+    Cancelled."""
+    part = _PACKING_SHARE.get(settings.effort, 0.0) if settings.pack else 0.0
+    share_of = native.part("base.progress").share_of
+    outcomes = unwrap_all_once(tasks, share_of(progress, 0.0, 1.0 - part))
+    numbers = [i for i, outcome in enumerate(outcomes) if isinstance(outcome, Unwrapped)]
+    try:
+        placed = placed_maps([outcomes[i] for i in numbers], settings, share_of(progress, 1.0 - part, 1.0))
+    except native.lsgp.Cancelled:
+        raise
+    except object_errors() as error:
+        placed = [error] * len(numbers)
+    for i, one in zip(numbers, placed, strict=True):
+        outcomes[i] = one
+    return outcomes
 
 
-def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
-    """As above, and how many islands are stacked on others."""
+def placed_maps(
+    solved: Sequence[Unwrapped], settings: PackSettings, progress: Progress | None = None
+) -> list[Unwrapped]:
+    """The maps with the coordinates that are to be written.  Raises Refused; InputError at a texel density that the
+    tiles do not hold."""
     if not settings.pack or not solved:
-        return [unwrapped.corner_uv for unwrapped in solved], 0
+        return list(solved)
     if settings.by_cells:
-        return cells.pack(solved), 0
+        return _at(solved, cells.pack(solved))
     settings = turned_for([unwrapped.region for unwrapped in solved], settings)
+    how = {"turned": settings.turned, "effort": settings.effort, "progress": progress}
     parts = _with_one_density(solved)
     if settings.texels is not None:
         alike = _whole(solved, [part.corner_uv for part in parts])
-        return packed_at_density(solved, alike, settings.texels, turned=settings.turned, unit=settings.unit), 0
-    packed, stacked = _packed(parts, settings)
-    return _whole(solved, packed), stacked
-
-
-def _packed(parts: Sequence[Islands], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
-    def pack(kept: Sequence[Islands]) -> list[NDArray[np.float64]]:
-        return packing.pack(kept, settings.margin, turned=settings.turned, udim=settings.udim)
-
+        place = None if settings.surroundings is None else in_place.place_of(solved, settings.surroundings)
+        return _at(solved, packed_at_density(solved, alike, settings.texels, unit=settings.unit, place=place, **how))
+    margin, notes = settings.margin, []
+    pack = partial(packing.pack, margin=margin, udim=settings.udim, **how)
+    if settings.surroundings is not None:
+        place, parts = in_place.at_density(solved, parts, settings.surroundings)
+        pack = partial(packing.pack_in_place, margin=margin, place=place, **how)
     if settings.stack is None:
-        return pack(parts), 0
-    return packed_in_stacks(parts, pack, mirrored=settings.stack == "mirrored")
+        packed = pack(parts)
+    else:
+        packed, stacked = packed_in_stacks(parts, pack, mirrored=settings.stack == "mirrored")
+        if stacked:
+            notes.append(f"{counted(stacked, 'island')} stacked on others")
+    if settings.surroundings is not None:
+        notes += in_place.told(place, [part.corner_uv for part in parts], packed)
+    return _at(solved, _whole(solved, packed), "; ".join(notes))
+
+
+def _at(solved: Sequence[Unwrapped], layouts: Sequence[NDArray[np.float64]], note: str = "") -> list[Unwrapped]:
+    """note: told of the last one."""
+    notes = [*[""] * (len(solved) - 1), note]
+    return [
+        replace(unwrapped, corner_uv=uv, note=said) for unwrapped, uv, said in zip(solved, layouts, notes, strict=True)
+    ]
 
 
 def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
@@ -112,23 +153,23 @@ def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
     return parts
 
 
-def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> None:
-    """Write the coordinates, (m, 3, 2), and store the report on them."""
-    found = replace(report_on(unwrapped), texel_density=map_density(unwrapped.region, corner_uv))
+def write_map(obj: bpy.types.Object, unwrapped: Unwrapped) -> None:
+    """Write the coordinates, and store the report on them."""
+    found = replace(report_on(unwrapped), texel_density=map_density(unwrapped.region, unwrapped.corner_uv))
     report = reports.joined(reports.find(obj.data), found, unwrapped.region)
-    write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
+    write_uv(obj, unwrapped.region, unwrapped.result.solved, unwrapped.corner_uv)
     reports.store(obj.data, report)
 
 
-def map_summary(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> str:
+def map_summary(unwrapped: Unwrapped) -> str:
     """A map in one line, with the number of islands that lose their shape in single precision, in which Blender stores
-    UVs.  corner_uv: (m, 3, 2), final."""
+    UVs."""
     summary = unwrap_summary(unwrapped)
-    tiny = tiny_findings(unwrapped, corner_uv)
-    if not tiny:
-        return summary
-    count = len(np.unique(unwrapped.result.island[tiny[0].elements.indices]))
-    return f"{summary}; {counted(count, 'island')} too small for UV coordinates to keep in shape"
+    tiny = tiny_findings(unwrapped, unwrapped.corner_uv)
+    if tiny:
+        count = len(np.unique(unwrapped.result.island[tiny[0].elements.indices]))
+        summary += f"; {counted(count, 'island')} too small for UV coordinates to keep in shape"
+    return f"{summary}; {unwrapped.note}" if unwrapped.note else summary
 
 
 def tiny_findings(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> list[lsgp.Finding]:

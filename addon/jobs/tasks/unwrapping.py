@@ -116,7 +116,7 @@ class Unwrapped:
 
     corner_uv: (m, 3, 2) float64 as to be written, NaN where not solved. pinned: (m, 3) bool, the corners that kept
     their UVs. aspect: as in the task. step: side of the cells by which islands of a seamless layout may be moved; None
-    for other layouts.
+    for other layouts. note: what is to be told of its place.
     """
 
     region: Region
@@ -125,6 +125,7 @@ class Unwrapped:
     pinned: NDArray[np.bool_]
     aspect: float
     step: float | None
+    note: str = ""
 
     @property
     def warnings(self) -> list[lsgp.Finding]:

@@ -67,10 +67,24 @@ class BackgroundOperator(ComputingOperator):
         """The vertex groups to read, and what makes the task of an object; that may raise LsgpError and Refused."""
         raise NotImplementedError
 
+    def reader(self, faces: Faces) -> Callable[[bpy.types.Object], Task | None]:
+        """What reads the task of an object, None where none of its faces is asked for."""
+        groups, make_task = self.plan()
+
+        def read(obj: bpy.types.Object) -> Task | None:
+            region = read_region(obj, faces, groups, subdivided=self.use_subsurf_data)
+            return None if region is None else make_task(obj, region)
+
+        return read
+
     @staticmethod
     def solve(tasks: list[Task], progress: Progress | None = None) -> list[Any | Exception]:
         """The result of each task, which has ``warnings``, or its error.  Touches nothing in Blender."""
         raise NotImplementedError
+
+    def solver(self, _context: bpy.types.Context) -> Callable[..., list[Any | Exception]]:
+        """`solve`, or what computes as that does, with what else is read in Blender for it."""
+        return self.solve
 
     def write(self, solved: Solved) -> list[str]:
         """Change the objects; returns what was done to each.  Raises Refused before anything is changed."""
@@ -115,7 +129,7 @@ class BackgroundOperator(ComputingOperator):
         if redo.is_redone(self):
             return self._redo(context)
         gathered, failures = self._gather(context)
-        outcomes = self.solve([task for _, task in gathered])
+        outcomes = self.solver(context)([task for _, task in gathered])
         found = [(obj, task, outcome) for (obj, task), outcome in zip(gathered, outcomes, strict=True)]
         return self._conclude(found, failures)
 
@@ -131,18 +145,13 @@ class BackgroundOperator(ComputingOperator):
     def _start(self, context: bpy.types.Context) -> _Work:
         gathered, failures = self._gather(context)
         tasks = [task for _, task in gathered]
-        return _Work([target(obj) for obj, _ in gathered], tasks, Computation(partial(self.solve, tasks)), failures)
+        computation = Computation(partial(self.solver(context), tasks))
+        return _Work([target(obj) for obj, _ in gathered], tasks, computation, failures)
 
     def _gather(self, context: bpy.types.Context) -> tuple[list[tuple[bpy.types.Object, Task]], dict[str, Exception]]:
         """What is to be computed for each object with selected faces, and the errors of the others by name."""
-        groups, make_task = self.plan()
         objects, faces = self.sources(context)
-
-        def read(obj: bpy.types.Object) -> Task | None:
-            region = read_region(obj, faces, groups, subdivided=self.use_subsurf_data)
-            return None if region is None else make_task(obj, region)
-
-        gathered, failures = for_each(objects, read)
+        gathered, failures = for_each(objects, self.reader(faces))
         for obj in objects:
             if obj.name in failures:
                 findings.keep(obj, None, [failures[obj.name]])

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -24,15 +25,14 @@ from ...core.choices import (
 from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
-from ...core.text import counted
-from ...jobs.layouts.maps import PackSettings, map_summary, stacked_layouts, write_map
-from ...jobs.layouts.remembered import unwrap_all_once
+from ...jobs.layouts.maps import PackSettings, map_summary, unwrap_and_place, write_map
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.unwrapping import USUAL_TARGET, Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
+from ..shared.packing import EFFORTS, PackingProperties, with_surroundings
 from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
 from .direction_choices import chosen_direction
 from .features import PLACES, FeatureProperties
@@ -41,8 +41,6 @@ from .sections import section
 
 if TYPE_CHECKING:
     import lsgp
-
-    from ...jobs.tasks.solving import Progress
 
 SCALES: Choices = {
     "FILL": (None, "Fill Square", "Islands become as large as possible"),
@@ -88,6 +86,7 @@ class UV_OT_cone_auto_unwrap(
     StrokesProperty,
     TileSizeProperties,
     FeatureProperties,
+    PackingProperties,
     BackgroundOperator,
     bpy.types.Operator,
 ):
@@ -236,6 +235,9 @@ class UV_OT_cone_auto_unwrap(
             layout.prop(self, "udim")
             if self.scale == "FILL":
                 layout.prop(self, "stack")
+            layout.prop(self, "effort")
+            if context.mode == "EDIT_MESH":
+                layout.prop(self, "in_place")
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
@@ -290,22 +292,16 @@ class UV_OT_cone_auto_unwrap(
 
         return Groups(settings.cone_group), make_task
 
-    @staticmethod
-    def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all_once(tasks, progress)
+    def solver(self, context: bpy.types.Context) -> Callable[..., list[Unwrapped | Exception]]:
+        settings = with_surroundings(self._packing(), *self.sources(context), in_place=self.in_place)
+        return partial(unwrap_and_place, settings)
 
     def write(self, solved: Solved) -> list[str]:
-        layouts, stacked = stacked_layouts([unwrapped for _, _, unwrapped in solved], self._packing())
-        for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
-            write_map(obj, unwrapped, corner_uv)
+        for obj, task, unwrapped in solved:
+            write_map(obj, unwrapped)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
-        summaries = [
-            map_summary(unwrapped, corner_uv) for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)
-        ]
-        if stacked:
-            summaries[-1] += f"; {counted(stacked, 'island')} stacked on others"
-        return summaries
+        return [map_summary(unwrapped) for _, _, unwrapped in solved]
 
     def _weights(self) -> lsgp.Weights:
         """Those of the preset, times what the artist wants more or less."""
@@ -315,7 +311,8 @@ class UV_OT_cone_auto_unwrap(
     def _packing(self) -> PackSettings:
         size = int(self.texture_size)
         by_cells = self.preset == "TILE"
-        pack = PackSettings(True, by_cells, self.margin / size, udim=self.udim)
+        effort = EFFORTS[self.effort][0]
+        pack = PackSettings(True, by_cells, self.margin / size, udim=self.udim, effort=effort)
         if by_cells:
             return pack
         if self.scale == "FILL":

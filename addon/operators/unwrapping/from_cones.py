@@ -4,26 +4,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
 
 import bpy
 
 from ...core import identifiers
 from ...core.region import Region
-from ...jobs.layouts.maps import final_layouts, map_summary, write_map
-from ...jobs.layouts.remembered import unwrap_all_once
+from ...jobs.layouts.maps import map_summary, unwrap_and_place, write_map
 from ...jobs.tasks.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
+from ..shared.packing import PackingProperties, with_surroundings
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
 from .features import FeatureProperties
 from .low_stretch import LowStretchProperties
 from .properties import UnwrapProperties, pack_settings, unwrap_settings
 from .seamless import SeamlessProperties
 from .sections import section
-
-if TYPE_CHECKING:
-    from ...jobs.tasks.solving import Progress
 
 
 class UV_OT_cone_unwrap(
@@ -35,6 +32,7 @@ class UV_OT_cone_unwrap(
     SeamlessProperties,
     FeatureProperties,
     UnwrapProperties,
+    PackingProperties,
     BackgroundOperator,
     bpy.types.Operator,
 ):
@@ -73,12 +71,11 @@ class UV_OT_cone_unwrap(
         settings = unwrap_settings(self)
         return Groups(settings.cone_group, settings.weight_group), lambda _obj, region: unwrap_task(region, settings)
 
-    @staticmethod
-    def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all_once(tasks, progress)
+    def solver(self, context: bpy.types.Context) -> Callable[..., list[Unwrapped | Exception]]:
+        settings = with_surroundings(pack_settings(self), *self.sources(context), in_place=self.in_place)
+        return partial(unwrap_and_place, settings)
 
     def write(self, solved: Solved) -> list[str]:
-        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack_settings(self))
-        for (obj, _, unwrapped), corner_uv in zip(solved, layouts, strict=True):
-            write_map(obj, unwrapped, corner_uv)
-        return [map_summary(unwrapped, corner_uv) for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)]
+        for obj, _, unwrapped in solved:
+            write_map(obj, unwrapped)
+        return [map_summary(unwrapped) for _, _, unwrapped in solved]

@@ -9,6 +9,7 @@ from ...core.preferences import chosen_threads
 from ...jobs.layouts.maps import PackSettings
 from ...jobs.tasks.unwrapping import UnwrapSettings
 from ..shared.cut_choices import chosen_cuts
+from ..shared.packing import EFFORTS
 from ..shared.properties import BORDERS, SEAMS
 from .direction_choices import chosen_direction
 from .features import PLACES, FeatureProperties
@@ -109,6 +110,8 @@ class UnwrapProperties(DirectionProperty, StrokesProperty):
         layout.prop(self, "pack")
         if self.pack and not self.seamless:
             layout.prop(self, "margin")
+            layout.prop(self, "effort")
+            layout.prop(self, "in_place")
 
 
 def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
@@ -144,4 +147,4 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
 def pack_settings(chosen: bpy.types.OperatorProperties) -> PackSettings:
     """How these properties ask islands to be placed."""
     pack = chosen.pack and not chosen.keep_placement
-    return PackSettings(pack, chosen.seamless, chosen.margin)
+    return PackSettings(pack, chosen.seamless, chosen.margin, effort=EFFORTS[chosen.effort][0])

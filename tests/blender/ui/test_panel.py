@@ -94,7 +94,7 @@ def test_options_of_seamless_layouts_are_drawn_only_with_it():
     straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
     of_grid = {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe", "straight_places"}
     assert seamless.keys() - plain.keys() == of_grid | straight
-    assert plain.keys() - seamless.keys() == {"correct_aspect", "margin"}
+    assert plain.keys() - seamless.keys() == {"correct_aspect", "margin", "effort", "in_place"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
     assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
     by_density = panel(seamless=True, tile_fit="DENSITY").keys()
@@ -128,7 +128,7 @@ def test_of_auto_unwrap_a_beginner_sees_the_preset_cuts_cones_and_the_square():
         return set(panel(False, bpy.ops.uv.cone_auto_unwrap, **options))
 
     always = {"preset", "cuts", "count", "direction"}
-    square = {"texture_size", "margin", "scale", "udim"}
+    square = {"texture_size", "margin", "scale", "udim", "effort"}
     assert at_first() == at_first(preset="BAKE") == always | square | {"target", "stack"}
     assert at_first(scale="DENSITY") == always | square | {"target", "density"}
     assert at_first(preset="TILE") == always | {"target", "tile_fit"}

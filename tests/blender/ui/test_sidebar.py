@@ -76,7 +76,7 @@ def test_only_the_first_panel_and_problems_are_open_at_first():
 
 def test_the_first_panel_has_one_large_button_and_it_is_auto_unwrap():
     _, buttons = drawn(panels.VIEW3D_PT_cone_unwrap)
-    assert [name for name, _ in buttons] == ["uv.cone_auto_unwrap", "uv.cone_unwrap"]
+    assert [name for name, _ in buttons] == ["uv.cone_auto_unwrap", "uv.cone_unwrap", "uv.cone_pack"]
 
 
 def test_the_table_has_the_figures_of_the_library():

@@ -133,7 +133,7 @@ def test_pins_of_other_layers_and_unselected_faces_have_no_say():
     for obj in (grid, twin):
         edit(obj)
         select_elements(obj, "faces", left)
-        assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+        assert bpy.ops.uv.cone_unwrap(in_place=False) == {"FINISHED"}
         results.append(active_uv(obj)[[loop for f in left for loop in UvMap(obj).loops_of_face[f]]])
         bpy.ops.object.mode_set(mode="OBJECT")
     assert results[0].tobytes() == results[1].tobytes()
