@@ -8,7 +8,7 @@ from .core.choices import ConeUnwrapPresetDefaults
 from .jobs.batch import command
 from .jobs.layouts import remembered
 from .jobs.tasks import computation
-from .mesh import changes, distortion, reports, texel_settings, texture
+from .mesh import changes, distortion, own_settings, reports, texel_settings, texture
 from .operators.angles.preview_stretch import MESH_OT_cone_preview
 from .operators.angles.select_row import MESH_OT_cone_select_one
 from .operators.angles.set_angle import MESH_OT_cone_set_angle
@@ -91,6 +91,7 @@ MODULES = (
     distortion,
     texture,
     texel_settings,
+    own_settings,
     handlers,
     command,
     remembered,

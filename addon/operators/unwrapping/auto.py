@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -29,7 +30,9 @@ from ...jobs.layouts.maps import PackSettings, map_summary, unwrap_and_place, wr
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.unwrapping import USUAL_TARGET, Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
+from ...mesh.own_settings import keep_settings, own_settings
 from ...mesh.region_read import Groups
+from ...mesh.targets import active_object
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.packing import EFFORTS, PackingProperties, with_surroundings
@@ -183,6 +186,7 @@ class UV_OT_cone_auto_unwrap(
     taken: bpy.props.StringProperty(description="What was taken from the preferences, as JSON", options=_UNSEEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self._take_settings(context)
         self._take_defaults(is_redone=False)
         return super().invoke(context, event)
 
@@ -190,6 +194,32 @@ class UV_OT_cone_auto_unwrap(
         if self.options.is_repeat:
             self._take_defaults(is_redone=True)
         return super().execute(context)
+
+    def _take_settings(self, context: bpy.types.Context) -> None:
+        """Those that were chosen for the active object, where the caller says nothing; what was chosen for another one,
+        and Blender keeps, has no say."""
+        active = active_object(context)
+        kept = {} if active is None else own_settings(active)
+        for name in self._names():
+            if self.properties.is_property_set(name):
+                continue
+            self.properties.property_unset(name)
+            if name in kept:
+                # A value of another version of the add-on may be none any more.
+                with suppress(TypeError, ValueError):
+                    setattr(self, name, kept[name])
+
+    def _keep_settings(self, objects: Iterable[bpy.types.Object]) -> None:
+        """On the objects, but for what came from the preferences."""
+        taken = json.loads(self.taken or "{}")
+        is_set = partial(self.properties.is_property_set, ghost=False)
+        values = {name: getattr(self, name) for name in self._names() if name != "taken" and is_set(name)}
+        chosen = {name: value for name, value in values.items() if value != taken.get(name)}
+        for obj in objects:
+            keep_settings(obj, chosen)
+
+    def _names(self) -> list[str]:
+        return [prop.identifier for prop in self.properties.bl_rna.properties if not prop.is_readonly]
 
     def _take_defaults(self, *, is_redone: bool) -> None:
         """Take from the preferences what neither the caller says nor the artist chose since Blender was started.
@@ -301,6 +331,7 @@ class UV_OT_cone_auto_unwrap(
             write_map(obj, unwrapped)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
+        self._keep_settings(obj for obj, _, _ in solved)
         return [map_summary(unwrapped) for _, _, unwrapped in solved]
 
     def _weights(self) -> lsgp.Weights:

@@ -375,6 +375,27 @@ def test_the_first_press_begins_with_the_preferences_until_the_artist_chooses():
         assert (yield from pressed(preset="BAKE")) == ("BAKE", "2048", 2, "Z")
 
 
+def test_what_was_chosen_for_one_object_is_not_taken_for_another():
+    def count():
+        return bpy.context.window_manager.operators[-1].properties.count
+
+    objects = [add_cone_cube("First"), add_cone_cube("Second")]
+
+    def make_active(obj):
+        bpy.ops.object.select_all(action="DESELECT")
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+
+    make_active(objects[0])
+    assert (yield from pressed(count=9, texture_size="512")) == ("PAINT", "512", 4, "AUTO")
+    make_active(objects[1])
+    assert (yield from pressed(preset="BAKE")) == ("BAKE", "1024", 4, "AUTO") and count() == 0
+    make_active(objects[0])
+    assert (yield from pressed()) == ("PAINT", "512", 4, "AUTO") and count() == 9
+    assert bpy.ops.mesh.cone_clear_data() == {"FINISHED"}
+    assert (yield from pressed()) == ("PAINT", "1024", 4, "AUTO") and count() == 0
+
+
 def test_a_preset_that_is_chosen_in_the_redo_panel_brings_its_preferences():
     add_cone_cube()
     bpy.ops.ed.undo_push(message="before")
