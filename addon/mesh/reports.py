@@ -34,8 +34,9 @@ class Report:
     radians. flipped, overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area,
     certificate: as in the library's result of the last unwrap; certificate is None for layouts that are not seamless.
     texel_density: of the last unwrap in its final place the least, the median and the largest length in the map of a
-    unit in the world; None before it has that place. overlaps_known: False once islands were scaled, which may have put
-    them onto each other.
+    unit in the world; None before it has that place. square_used: the part of the UV square that is covered by all that
+    was packed with it; None where it was not packed into that. overlaps_known: False once islands were scaled, which
+    may have put them onto each other.
     """
 
     paths: list[list[int]]
@@ -54,6 +55,7 @@ class Report:
     kinds: list[str] = field(default_factory=list)
     drawn: list[int] = field(default_factory=list)
     drawn_errors: list[float] = field(default_factory=list)
+    square_used: float | None = None
 
     def edges_of(self, kind: str) -> list[tuple[int, int]]:
         """The vertex pairs of the edges that were cut for this reason."""

@@ -59,6 +59,10 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
         column.operator(identifiers.AUTO_UNWRAP, icon="UV")
         layout.operator(identifiers.UNWRAP)
         layout.operator(identifiers.PACK)
+        active = context.object
+        report = reports.current(active.data) if active is not None and active.type == "MESH" else None
+        if report is not None:
+            draw_wrapped(layout, context, tables.in_one_line(report))
 
 
 class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):

@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 from ..core.length_units import length_unit
+from ..core.text import counted, square_in_percent, stretch_in_percent
 from ..mesh.reports import Report
 
 Row = tuple[str, ...]
@@ -22,6 +23,14 @@ SHOWN_CUTS = 8
 EXACT = "exact"
 # Smaller errors are those of the numbers that it was computed with.
 ROUNDING = 1e-9
+
+
+def in_one_line(report: Report) -> str:
+    """As "3 islands, 1.6 % stretch, 52 % of the square used"."""
+    parts = [counted(report.islands, "island"), stretch_in_percent(report.distortion["l2_stretch"])]
+    if report.square_used is not None:
+        parts.append(square_in_percent(report.square_used))
+    return ", ".join(parts)
 
 
 def quality_rows(report: Report) -> list[Row]:

@@ -120,14 +120,19 @@ def placed_maps(
             notes.append(f"{counted(stacked, 'island')} stacked on others")
     if settings.surroundings is not None:
         notes += in_place.told(place, [part.corner_uv for part in parts], packed)
-    return _at(solved, _whole(solved, packed), "; ".join(notes))
+    fills = settings.surroundings is None and settings.stack is None and settings.udim == 1
+    used = sum(map(total_area, packed)) if fills and not any(part.stays.any() for part in parts) else None
+    return _at(solved, _whole(solved, packed), "; ".join(notes), used)
 
 
-def _at(solved: Sequence[Unwrapped], layouts: Sequence[NDArray[np.float64]], note: str = "") -> list[Unwrapped]:
-    """note: told of the last one."""
+def _at(
+    solved: Sequence[Unwrapped], layouts: Sequence[NDArray[np.float64]], note: str = "", used: float | None = None
+) -> list[Unwrapped]:
+    """note: told of the last one. used: the part of the square that all cover."""
     notes = [*[""] * (len(solved) - 1), note]
     return [
-        replace(unwrapped, corner_uv=uv, note=said) for unwrapped, uv, said in zip(solved, layouts, notes, strict=True)
+        replace(unwrapped, corner_uv=uv, note=said, square_used=used)
+        for unwrapped, uv, said in zip(solved, layouts, notes, strict=True)
     ]
 
 
@@ -201,6 +206,7 @@ def report_on(unwrapped: Unwrapped) -> reports.Report:
         certificate=certificate,
         drawn=drawn,
         drawn_errors=drawn_errors,
+        square_used=unwrapped.square_used,
     )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.errors import Refused, object_errors
 from ...core.islands import Islands, Place
+from ..tasks.areas import total_area
 from ..uv_maps.texels import Scaled
 from . import in_place, packing
 
@@ -62,11 +63,13 @@ class RepackTask:
 
 @dataclass(frozen=True, slots=True)
 class Repacked:
-    """scaled: the new coordinates and what was moved. note: what is to be told of all."""
+    """scaled: the new coordinates and what was moved. note: what is to be told of all. square_used: the part of the UV
+    square that all cover; None where some stay, share texels, or are not packed into it."""
 
     region: Region
     scaled: Scaled
     note: str = ""
+    square_used: float | None = None
     warnings: list[lsgp.Finding] = field(default_factory=list)
 
 
@@ -78,6 +81,7 @@ class _Found:
     island: NDArray[np.int32]
     moved: NDArray[np.bool_]
     parts: Islands
+    stacked: bool
 
 
 def repack(
@@ -98,6 +102,7 @@ def repack(
 def _islands(task: RepackTask, settings: RepackSettings) -> _Found:
     region, uv = task.region, task.region.corner_uv
     island = native.lsgp.measure_distortion(region.surface, uv).island
+    count = int(island.max(initial=-1)) + 1
     if settings.keep_stacks:
         island = _merged(uv, island)
     moved = (island >= 0) & np.isin(island, island[task.chosen & (island >= 0)])
@@ -105,7 +110,7 @@ def _islands(task: RepackTask, settings: RepackSettings) -> _Found:
         raise Refused("the UV map has no islands there; unwrap the mesh first")
     own = np.unique(island[moved], return_inverse=True)[1].ravel().astype(np.int32)
     parts = Islands(region.surface.triangles[moved], uv[moved], own, region.pinned[moved], region.image_aspect)
-    return _Found(island, moved, parts)
+    return _Found(island, moved, parts, int(island.max()) + 1 < count)
 
 
 def _merged(uv: FloatArray, island: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -138,6 +143,9 @@ def _packed(
         packed = packing.pack_in_place(parts, settings.margin, place, **how)
     else:
         packed = packing.pack(parts, settings.margin, udim=settings.udim, **how)
+    whole = settings.udim == 1 and fill and not len(others)
+    alone = whole and not any(one.parts.stays.any() or one.stacked for one in found)
+    used = sum(map(total_area, packed)) if alone else None
     notes = in_place.told(place, [part.corner_uv for part in parts], packed)
     outcomes = []
     for task, one, uv in zip(tasks, found, packed, strict=True):
@@ -145,6 +153,7 @@ def _packed(
         corner_uv[one.moved] = uv
         islands, total = len(np.unique(one.island[one.moved])), len(np.unique(one.island[one.island >= 0]))
         alike = islands == total and not one.parts.stays.any()
-        outcomes.append(Repacked(task.region, Scaled(corner_uv, one.moved, islands, 0, total, alike)))
+        scaled = Scaled(corner_uv, one.moved, islands, 0, total, alike)
+        outcomes.append(Repacked(task.region, scaled, square_used=used))
     outcomes[-1] = replace(outcomes[-1], note="; ".join(notes))
     return outcomes

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ...core.text import counted
+from ...core.text import counted, square_in_percent, stretch_in_percent
 from .cells import inexact_cuts
 
 if TYPE_CHECKING:
@@ -20,12 +20,15 @@ NOTICEABLE = math.radians(1.0)
 
 
 def unwrap_summary(unwrapped: Unwrapped) -> str:
-    """Islands, cones, stretch, overlaps, and how well the cuts of a seamless layout match."""
+    """Islands, stretch, the part of the square that is used, overlaps, and how well the cuts of a seamless layout
+    match."""
     result = unwrapped.result
     parts = [
-        f"{counted(int(result.island.max()) + 1, 'island')} through {counted(len(result.cones), 'cone')}",
-        f"stretch {result.distortion.l2_stretch:.3f} (1 is none)",
+        counted(int(result.island.max()) + 1, "island"),
+        stretch_in_percent(result.distortion.l2_stretch),
     ]
+    if unwrapped.square_used is not None:
+        parts.append(square_in_percent(unwrapped.square_used))
     if result.overlap_area > 0:
         parts.append(f"{100 * result.overlap_area:.2g} % overlapping")
     if result.direction_error is not None and result.direction_error > NOTICEABLE:
@@ -40,7 +43,7 @@ def unwrap_summary(unwrapped: Unwrapped) -> str:
 def placement_summary(placement: lsgp.Placement, new: int) -> str:
     """new: how many of the cones were not marked before."""
     count = counted(len(placement.cones), "cone")
-    return f"{count}, {new} of them new, stretch {placement.mapped_l2:.3f} (1 is none)"
+    return f"{count}, {new} of them new, {stretch_in_percent(placement.mapped_l2)}"
 
 
 def quad_summary(mesh: lsgp.QuadMesh, across: int) -> str:

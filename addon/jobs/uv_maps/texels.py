@@ -122,6 +122,7 @@ def report_on_scaled(report: Report, region: Region, scaled: Scaled) -> Report:
         certificate=None,
         texel_density=map_density(region, scaled.corner_uv),
         overlaps_known=report.overlaps_known and scaled.total == 1,
+        square_used=None,
     )
 
 

@@ -12,7 +12,7 @@ import bpy
 from ...core import identifiers
 from ...core.choices import TextureProperties
 from ...core.errors import Refused
-from ...core.text import counted
+from ...core.text import counted, square_in_percent
 from ...jobs.layouts.repacking import Repacked, RepackSettings, RepackTask, repack
 from ...jobs.uv_maps.texels import report_on_scaled
 from ...mesh import reports
@@ -107,9 +107,13 @@ class UV_OT_cone_pack(TextureProperties, PackingProperties, BackgroundOperator, 
             if report is not None:
                 # Islands are where none lies on another, as far as they did not lie so.
                 known = report.overlaps_known
-                report = replace(report_on_scaled(report, done.region, done.scaled), overlaps_known=known)
+                scaled = report_on_scaled(report, done.region, done.scaled)
+                report = replace(scaled, overlaps_known=known, square_used=done.square_used)
             write_uv(obj, done.region, done.scaled.moved, done.scaled.corner_uv)
             if report is not None:
                 reports.store(obj.data, report)
-            said.append(f"{counted(done.scaled.islands, 'island')} packed" + (f"; {done.note}" if done.note else ""))
+            packed = f"{counted(done.scaled.islands, 'island')} packed"
+            if done.square_used is not None:
+                packed += f", {square_in_percent(done.square_used)}"
+            said.append(f"{packed}; {done.note}" if done.note else packed)
         return said

@@ -126,8 +126,8 @@ def pack_islands(
     effort: "quick": the first layout, in a hundredth of a second for a hundred islands; "good": the best of some
         hundreds; "best": of many more, for minutes. The same effort gives the same layout on every machine, more effort
         none that is worse.
-    seconds: of "best": how long it goes on, but at least until there is the layout of "good", with which it begins. What
-        it finds then hangs on the machine.
+    seconds: of "best": how long it goes on, but at least until there is the layout of "good", with which it begins.
+        What it finds then hangs on the machine.
     area: (left, bottom, right, top), the rectangle that islands are packed into. None: the unit square; without `fill`
         and islands that keep their place, the smallest square that begins at the origin.
     groups: (islands,) numbers of groups, whose islands keep their places relative to each other; -1: alone.

@@ -138,10 +138,13 @@ def test_a_selection_may_fill_the_square_instead():
     assert (high - low).max() > 0.95
 
 
-def test_pack_moves_two_objects_together_and_leaves_pinned_islands():
+def test_pack_moves_two_objects_together_and_leaves_pinned_islands(reports):
     objects = [add_parts(3), add_cube(cuts=1)]
+    reports()
     objects[0].select_set(True)
     bpy.ops.uv.cone_auto_unwrap(texture_size=str(TEXELS), margin=MARGIN)
+    covered = sum(area(obj, [face.index for face in obj.data.polygons]) for obj in objects)
+    assert reports().count(f"{100 * covered:.0f} % of the square used") == 2
     locked = [faces_of(objects[0], number) for number in (0, 2)]
     for faces in locked:
         loops = [UvMap(objects[0]).loops_of_face[faces[0]][0]]
