@@ -16,8 +16,8 @@ SEAMS: Choices = {
     "IGNORE": ("ignore", "Ignore", "Marked seams do not influence where cuts run"),
 }
 CUTS: Choices = {
-    "FRONT": (None, "Hidden from Front", "Out of sight from the scene's front, and along creases and sharp edges"),
-    "VIEW": (None, "Hidden from View", "Out of sight from the 3D view, and along creases and sharp edges"),
+    "FRONT": (None, "No Cuts in Front", "Out of sight from the scene's front, and along creases and sharp edges"),
+    "VIEW": (None, "No Cuts in View", "Out of sight from the 3D view, and along creases and sharp edges"),
     "SHARP": (None, "Creases", "Along creases and sharp edges"),
     "SHORTEST": (None, "Shortest", "The shortest way"),
 }

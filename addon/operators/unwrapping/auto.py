@@ -115,9 +115,9 @@ class UV_OT_cone_auto_unwrap(
         soft_max=64,
     )
     target: bpy.props.FloatProperty(
-        name="Stretch",
-        description="The stretch (L2, 1 is none) not to exceed on any connected component, as far as possible; less "
-        "takes more cones, and with them cuts",
+        name="Max Stretch",
+        description="The stretch (L2, 1 is none, 1.05 is 5 %) not to exceed on any connected component, as far as "
+        "possible; less takes more cones, and with them cuts",
         default=USUAL_TARGET,
         min=1.001,
         soft_max=1.5,
@@ -147,7 +147,7 @@ class UV_OT_cone_auto_unwrap(
         default=True,
     )
     creases: bpy.props.BoolProperty(
-        name="Creases as Boundaries",
+        name="Cut at Sharp Edges",
         description="Cut hard surfaces at their creases and at edges marked sharp where that removes stretch; Paint "
         "does so only where many cones would be needed otherwise, Tile only where creases cannot run along the tiles. "
         "Components with marked cones or seams are not affected",
@@ -161,7 +161,7 @@ class UV_OT_cone_auto_unwrap(
         default=True,
     )
     compact: bpy.props.BoolProperty(
-        name="Compact Islands",
+        name="Split for Packing",
         description="Further cut islands that would leave much of the square empty, such as long strips, rings and "
         "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square and no "
         "seams are marked",
@@ -251,7 +251,7 @@ class UV_OT_cone_auto_unwrap(
         layout.use_property_split = True
         layout.row().prop(self, "preset", expand=True)
         layout.prop(self, "cuts")
-        layout.prop(self, "count")
+        layout.prop(self, "count", text="Cones" if self.count else "Cones (Auto)")
         if not self.count:
             layout.prop(self, "target")
         if self.preset == "TILE":
