@@ -44,6 +44,19 @@ def shows_meshes(space: bpy.types.Space) -> bool:
     return space.type == "VIEW_3D" or (space.type == "IMAGE_EDITOR" and space.show_uvedit)
 
 
+def show_layouts(context: bpy.types.Context) -> None:
+    """Have the UV editors of the window show all that is selected in them."""
+    if bpy.app.background or context.window is None:
+        return
+    for area in context.window.screen.areas:
+        if area.type != "IMAGE_EDITOR" or not area.spaces.active.show_uvedit:
+            continue
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with context.temp_override(window=context.window, area=area, region=region):
+            if bpy.ops.image.view_selected.poll():
+                bpy.ops.image.view_selected()
+
+
 def view_areas() -> Iterator[bpy.types.Area]:
     """The 3D views and image editors of all screens, also those that are not shown."""
     return (area for screen in bpy.data.screens for area in screen.areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})

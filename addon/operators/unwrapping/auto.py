@@ -37,6 +37,7 @@ from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.packing import EFFORTS, PackingProperties, with_surroundings
 from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
+from ..shared.views import show_layouts
 from .direction_choices import chosen_direction
 from .features import PLACES, FeatureProperties
 from .seamless import TileSizeProperties
@@ -332,6 +333,9 @@ class UV_OT_cone_auto_unwrap(
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
         self._keep_settings(obj for obj, _, _ in solved)
+        if self.preset == "TILE":
+            # Such layouts are as many units wide as there are tiles.
+            show_layouts(bpy.context)
         return [map_summary(unwrapped) for _, _, unwrapped in solved]
 
     def _weights(self) -> lsgp.Weights:

@@ -7,7 +7,7 @@ Run by run_in_window.py; no pytest.
 import bpy
 import numpy as np
 from scenes import UvMap, add_cube, covered_twice, edit, pin, select_elements
-from windows import running, take_picture, until, window
+from windows import region, running, take_picture, until, window
 
 
 def beside():
@@ -98,3 +98,20 @@ def test_the_best_layout_shows_its_progress_and_is_stopped_by_esc():
     window().event_simulate(type="ESC", value="PRESS")
     yield from until(lambda: not running("UV_OT_cone_pack"), 5)
     assert np.array_equal(UvMap(cube).uv, before)
+
+
+def test_the_uv_editor_shows_all_of_a_layout_in_tiles():
+    yield from beside()
+    cube = add_cube("Cube", cuts=3)
+    edit(cube)
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, preset="TILE") <= {"FINISHED", "RUNNING_MODAL"}
+    yield from until(lambda: not running("UV_OT_cone_auto_unwrap"), 60)
+    yield 0.5
+    take_picture("tiles_in_uv_editor")
+    uv = UvMap(cube).uv
+    assert uv.min() >= 0 and uv.min() < 1.01 and uv.max() > 1.5
+    editor = region(within="IMAGE_EDITOR")
+    for corner in (uv.min(axis=0), uv.max(axis=0)):
+        across, up = editor.view2d.view_to_region(*corner, clip=False)
+        assert 0 <= across <= editor.width and 0 <= up <= editor.height
