@@ -109,7 +109,7 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
 def _borders_inside(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
     """The keys of the edges that are open and no cuts: borders, and seams that are such."""
     borders, keys = edge_keys(*surface.borders.T), edge_keys(*surface.seams.T)
-    if options.seams == "boundary":
+    if options.seams == "boundary" or (options.seams == "exact" and not len(result.cones)):
         return np.union1d(borders, keys)
     opened = surface.triangles[named_by(result, "SEAMS_OPENED")]
     return np.union1d(borders, np.intersect1d(keys, edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel())))

@@ -210,8 +210,10 @@ Choice choose(const std::string& text, std::initializer_list<std::pair<const cha
 
 lsgp::SeamMode to_seam_mode(const std::string& name) {
   using lsgp::SeamMode;
-  return choose<SeamMode>(
-      name, {{"follow", SeamMode::follow}, {"boundary", SeamMode::boundary}, {"ignore", SeamMode::ignore}});
+  return choose<SeamMode>(name, {{"follow", SeamMode::follow},
+                                 {"exact", SeamMode::exact},
+                                 {"boundary", SeamMode::boundary},
+                                 {"ignore", SeamMode::ignore}});
 }
 
 lsgp::BorderMode to_border_mode(const std::string& name) {
@@ -474,6 +476,27 @@ py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones,
   py::dict out;
   out["edges"] = to_array(cuts.edges);
   out["paths"] = to_arrays(cuts.paths);
+  return out;
+}
+
+py::typing::List<py::dict> measure_charts(const SurfaceArrays& surface_arrays, const py::dict& option_values,
+                                          const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Options options = to_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  py::typing::List<py::dict> out;
+  for (const lsgp::Chart& chart : without_gil([&] { return lsgp::measure_charts(surface, options, tell); })) {
+    py::dict of;
+    of["triangles"] = to_array(chart.triangles);
+    of["euler"] = chart.euler;
+    of["borders"] = chart.borders;
+    of["is_mapped"] = chart.is_mapped;
+    of["l2_stretch"] = chart.l2_stretch;
+    of["flipped"] = chart.flipped;
+    of["overlapping"] = chart.overlapping;
+    of["missing"] = to_array(chart.missing);
+    out.append(of);
+  }
   return out;
 }
 
@@ -795,6 +818,7 @@ PYBIND11_MODULE(_lsgp, module) {
       .def("grab", &grab, "cuts"_a, "path"_a, "nodes"_a);
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
+  module.def("measure_charts", &measure_charts, "surface"_a, "options"_a, "progress"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);

@@ -40,6 +40,7 @@ from .api import (
     cut_costs,
     find_cuts,
     find_tubes,
+    measure_charts,
     measure_distortion,
     parameterize,
     place_cones,
@@ -76,6 +77,7 @@ from .presets.objective import Weights
 from .quads.quad_mesh import QuadMesh, QuadQuality, extract_quads, quad_quality
 from .quads.remeshing import QuadRemesh, remesh_to_quads
 from .results import (
+    Chart,
     Choice,
     ConeGains,
     CutPaths,
@@ -99,6 +101,7 @@ __version__ = version("lsgp")
 
 __all__ = [
     "Cancelled",
+    "Chart",
     "Choice",
     "ConeGains",
     "CurvatureError",
@@ -159,6 +162,7 @@ __all__ = [
     "hold_complete",
     "index_uv",
     "lattice",
+    "measure_charts",
     "measure_distortion",
     "overlapping_triangles",
     "pack_islands",

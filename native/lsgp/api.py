@@ -15,6 +15,7 @@ from .base.arguments import FloatArray, IndexArray
 from .base.progress import Progress
 from .options import BorderMode, Lattice, Options, SeamMode, thread_count
 from .results import (
+    Chart,
     ConeGains,
     CutPaths,
     Distortion,
@@ -195,6 +196,22 @@ def find_cuts(
     arguments.require_callable(progress)
     (vertices, _, _), values = cone_arrays(cones, None, options)
     return CutPaths(**_lsgp.find_cuts(surface_arrays(surface), vertices, values, progress))
+
+
+def measure_charts(surface: Surface, options: Options = Options(), progress: Progress | None = None) -> list[Chart]:
+    """The charts that the surface's marked seams bound: which of them are disks, what cuts the others lack, and how
+    good their maps are without cones and further cuts.
+
+    options: of these maps, but for `seams`, which is "exact". progress: as for `parameterize`.
+    Raises InputError, SolverError, Cancelled.
+
+    >>> marked = lsgp.Surface(surface.positions, surface.triangles, seams=[[0, 1], [0, 2], [0, 3]])
+    >>> [(chart.is_disk, round(chart.l2_stretch, 3)) for chart in lsgp.measure_charts(marked)]
+    [(True, 1.0)]
+    """
+    arguments.require_callable(progress)
+    _, values = cone_arrays((), None, options)
+    return [Chart(**chart) for chart in _lsgp.measure_charts(surface_arrays(surface), values, progress)]
 
 
 def crease_borders(

@@ -15,7 +15,7 @@ from .base.frozen import set_field
 PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
 UnfoldMethod = Literal["poisson", "spectral"]
 Method = Literal["lsgp", "lscm"]
-SeamMode = Literal["follow", "boundary", "ignore"]
+SeamMode = Literal["follow", "exact", "boundary", "ignore"]
 BorderMode = Literal["free", "straight", "strips"]
 Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
 CoarseGrid = Literal["refine", "merge", "relax"]
@@ -89,13 +89,16 @@ class Options:
     unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's eigenproblem; closed surfaces).
     method: "lsgp", or "lscm" for the paper's comparison: the same cuts without transitions.
     seams: "follow": all marked seams are cut, other edges only where cones or handles need them, and a region enclosed
-        by seams becomes an island of its own; "boundary": every seam is an open boundary, as in Blender's own unwrap;
-        "ignore".
+        by seams becomes an island of its own; "exact": the seams are cut and nothing else; "boundary": every seam is an
+        open boundary, also of components with cones; "ignore".
         With "follow", a component without cones is also opened along its seams (SEAMS_OPENED), unless its boundaries
         are straight, it is seamless and has a boundary, or it is a torus that its seams divide into disks or not at
         all; the texture of a component with given or placed cones continues across its seams.
         Pieces that are open along seams and have neither handles nor cones are not cut further, however many holes they
         have, as long as their map is within the range of numbers. CUTS_ADDED names all cuts besides the seams.
+        With "exact", all components without cones are opened, overlaps are kept, and what cannot be mapped without
+        further cuts is refused: SEAMS_INCOMPLETE names the edges that are missing, as a warning where the rest has a
+        map, and where a tube was laid out as a ring. Cones have to lie on seams that join them.
     border: "free": angles along boundaries are those of least distortion, and a cone there that has an angle is a
         corner; "straight": boundaries are straight from marked cone to marked cone; "strips": a tube, as
         `find_tubes` finds, between two boundaries, without marked cones and seams, becomes a straight strip if its
@@ -115,9 +118,9 @@ class Options:
     overlaps: "keep" islands that overlap themselves, or "split" them until none does: first along other cuts for the
         same cones, unless seams are marked, then along further cuts. Transitions stay exact.
     compact: further cuts of islands that would leave much of a square empty, such as long strips, rings and islands
-        with arms: "off"; "sparing", only where a short cut fills much of the square, and in no component with marked
-        seams; "full", wherever the filled area outweighs the cost of the cut and the additional island. Transitions
-        stay exact. Components with pins keep their islands.
+        with arms: "off"; "sparing", only where a short cut fills much of the square; "full", wherever the filled area
+        outweighs the cost of the cut and the additional island. Transitions stay exact. Components with pins or marked
+        seams keep their islands.
     mirrored_cuts: cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and
         that costs at most half as much again; so are islands that are split or made compact, if that adds few cuts.
         CUTS_NOT_MIRRORED names those that are not.

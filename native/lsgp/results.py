@@ -164,10 +164,10 @@ class Result(EqualByContent, ShortRepr):
         to less than a tenth of its Dirichlet energy is smaller.
     solved: (m,) bool.
     island: (m,) int32, the island of each triangle, -1 where not solved.
-    cut_edges: (c, 2) int32 vertex pairs along which the layout is open, without mesh boundaries and the seams of
-        "boundary"; on components with cones, seams that end in the interior are included, although their two sides
-        coincide. required_cuts: (r, 2) int32, those of them that cones, handles and boundaries need, also along seams;
-        the others are seams, or split overlaps and islands.
+    cut_edges: (c, 2) int32 vertex pairs along which the layout is open, without mesh boundaries; on components with
+        cones, seams that end in the interior are included, although their two sides coincide.
+    required_cuts: (r, 2) int32, those of them that cones, handles and boundaries need, also along seams; the others are
+        seams, or split overlaps and islands.
     borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
     cut_paths: cut_edges and borders as paths, each an int32 array of vertices from node to node; nodes are the cones,
         vertices where not exactly two of the edges meet, and those where edges of two kinds do. cut_kinds: of each
@@ -249,6 +249,32 @@ class CutPaths(EqualByContent, ShortRepr):
 
     edges: IndexArray
     paths: list[IndexArray]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Chart(EqualByContent, ShortRepr):
+    """A part of the surface bounded by its marked seams and boundaries, and its map without cones and further cuts.
+
+    triangles: (t,) int32. euler, borders: its Euler characteristic and the number of its boundaries, 1 and 1 for a
+        disk; 0 and 0 if it has one side only.
+    is_mapped: False of charts with handles, closed ones and one-sided ones. l2_stretch: of its map, at a scale of its
+        own; infinite without one. flipped, overlapping: numbers of triangles.
+    missing: (e, 2) int32, edges whose cutting leaves it as a disk, but for holes about which its metric nearly turns
+        once; none of closed charts without handles, which any cut opens.
+    """
+
+    triangles: IndexArray
+    euler: int
+    borders: int
+    is_mapped: bool
+    l2_stretch: float
+    flipped: int
+    overlapping: int
+    missing: IndexArray
+
+    @property
+    def is_disk(self) -> bool:
+        return self.euler == 1 and self.borders == 1
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -35,7 +35,10 @@ class AngleOperator(ConeGroupProperty, SeamsProperty, BorderProperty, ComputingO
         layout = self.layout
         layout.use_property_split = True
         for name in self.shown:
-            layout.prop(self, name)
+            if name == "seams":
+                self.draw_seams(layout)
+            else:
+                layout.prop(self, name)
         self.draw_vertex_group(layout, context)
 
     def library_options(self, **more: Any) -> lsgp.Options:

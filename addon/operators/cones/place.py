@@ -107,7 +107,7 @@ class MESH_OT_cone_place(
             layout.prop(self, "lattice")
         layout.separator()
         layout.prop(self, "cuts")
-        layout.prop(self, "seams")
+        self.draw_seams(layout)
         self.draw_vertex_group(layout, context)
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], PlacementTask]]:

@@ -9,12 +9,22 @@ from ...core.identifiers import CONE_GROUP, SEAM_COST_GROUP
 SEAMS: Choices = {
     "FOLLOW": (
         "follow",
-        "Follow",
-        "All marked seams are cut, others only where cones need it; both sides match if there are cones",
+        "Mine and Automatic Cuts",
+        "Marked seams are cut, and other edges only where islands would be no disks, be stretched too much or overlap "
+        "themselves, or where marked cones need it; across seams of parts with marked cones both sides match",
     ),
-    "BOUNDARY": ("boundary", "Boundary", "Marked seams are boundaries, as in Blender's own unwrap; holes stay holes"),
+    "EXACT": (
+        "exact",
+        "Mine Only",
+        "Marked seams are cut and nothing else; where that does not do, the edges that are missing are reported",
+    ),
     "IGNORE": ("ignore", "Ignore", "Marked seams do not influence where cuts run"),
+    # Of earlier versions, for scripts and presets; not offered.
+    "BOUNDARY": ("boundary", "Open", "Marked seams are open boundaries, also of parts with marked cones"),
 }
+OFFERED_SEAMS = ("FOLLOW", "EXACT", "IGNORE")
+# As keymaps hold them, also those made with earlier versions.
+_SEAM_NUMBERS = {"FOLLOW": 0, "BOUNDARY": 1, "IGNORE": 2, "EXACT": 3}
 CUTS: Choices = {
     "FRONT": (None, "No Cuts in Front", "Out of sight from the scene's front, and along creases and sharp edges"),
     "VIEW": (None, "No Cuts in View", "Out of sight from the 3D view, and along creases and sharp edges"),
@@ -79,8 +89,15 @@ class SeamsProperty:
     """Mix-in: what marked seams mean."""
 
     seams: bpy.props.EnumProperty(
-        name="Seams", description="The effect of edges marked as seams on the cuts", items=enum_items(SEAMS)
+        name="Seams",
+        description="The effect of edges marked as seams on the cuts",
+        items=[(*item, "NONE", _SEAM_NUMBERS[item[0]]) for item in enum_items(SEAMS)],
     )
+
+    def draw_seams(self, layout: bpy.types.UILayout) -> None:
+        column = layout.column(heading="Seams", align=True)
+        for identifier in OFFERED_SEAMS:
+            column.prop_enum(self, "seams", identifier)
 
 
 class CutsProperty:

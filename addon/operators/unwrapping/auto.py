@@ -164,8 +164,8 @@ class UV_OT_cone_auto_unwrap(
     compact: bpy.props.BoolProperty(
         name="Split for Packing",
         description="Further cut islands that would leave much of the square empty, such as long strips, rings and "
-        "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square and no "
-        "seams are marked",
+        "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square; not "
+        "parts with marked seams",
         default=True,
     )
     symmetric: bpy.props.BoolProperty(
@@ -272,7 +272,7 @@ class UV_OT_cone_auto_unwrap(
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
-            body.prop(self, "seams")
+            self.draw_seams(body)
             body.prop(self, "creases")
             body.prop(self, "straighten")
             if self.preset != "TILE":

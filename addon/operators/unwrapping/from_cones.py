@@ -57,7 +57,9 @@ class UV_OT_cone_unwrap(
         self.draw_seamless(layout, context)
         body = section(layout, "cone_unwrap_cuts", "Cuts and Cones")
         if body is not None:
-            for name in ("cuts", "seams", "border", "prescription", "unfold", "repair", "use_subsurf_data"):
+            body.prop(self, "cuts")
+            self.draw_seams(body)
+            for name in ("border", "prescription", "unfold", "repair", "use_subsurf_data"):
                 body.prop(self, name)
             self.draw_vertex_group(body, context)
         if self.seamless or self.mode == "LOW_STRETCH":

@@ -45,6 +45,7 @@ enum class Code {
   cuts_blocked,
   cut_not_movable,
   open_surface,
+  seams_incomplete,  // of single components a finding
   // CurvatureError
   cone_angle_range,
   gauss_bonnet,

@@ -38,6 +38,11 @@ LSGP_API Result parameterize(const Surface& surface, const Cones& cones, const O
 LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options = {},
                             const Progress& progress = {});
 
+// The charts that the surface's marked seams bound, each with what its map without cones and further cuts is worth: a
+// map made with SeamMode::exact and otherwise these options.
+LSGP_API std::vector<Chart> measure_charts(const Surface& surface, const Options& options = {},
+                                           const Progress& progress = {});
+
 // Vertex chains between nodes: the given ones and every vertex where not exactly two of the edges meet. A loop without
 // a node begins and ends at its lowest vertex. The same for any order of the edges; those given twice count once.
 LSGP_API std::vector<std::vector<Index>> split_into_paths(const VertexPairs& edges, const std::vector<Index>& nodes);

@@ -42,17 +42,18 @@ enum class Overlaps {
 };
 
 // Whether islands that would leave much of a square empty are cut further; transitions stay exact. Not in seamless
-// layouts; components with pins keep their islands.
+// layouts; components with pins or marked seams keep their islands.
 enum class Compactness {
   off,
-  sparing,  // only where a short cut fills much of the square, and in no component with marked seams
+  sparing,  // only where a short cut fills much of the square
   full,     // wherever the filled area outweighs the cost of the cut and the additional island
 };
 
 // The meaning of a marked seam.
 enum class SeamMode {
   follow,    // all seams are cut, other edges if cones and handles need it; components without cones are open there
-  boundary,  // every seam is an open boundary, as in Blender's own unwrap
+  exact,     // the seams are cut and nothing else; what cannot be mapped so is refused, overlaps are only reported
+  boundary,  // every seam is an open boundary, also of components with cones
   ignore,
 };
 

@@ -91,6 +91,17 @@ struct CutPaths {
   std::vector<std::vector<Index>> paths;  // vertices from node to node
 };
 
+// A part of the surface bounded by its marked seams and boundaries, and its map without cones and further cuts.
+struct Chart {
+  std::vector<Index> triangles;
+  int euler = 0, borders = 0;          // 1 and 1: a disk; one-sided: 0 and 0
+  bool is_mapped = false;              // a handle, a closed part or a one-sided one cannot be
+  double l2_stretch = 1;               // at a scale of its own; of a chart without a map infinite
+  Index flipped = 0, overlapping = 0;  // triangles
+  // Cuts that leave it as a disk, but for holes about which its metric nearly turns once, (e, 2).
+  VertexPairs missing;
+};
+
 // Why the edges of a path are cut: marked seams; cones, handles and boundaries that need it; or anything else, such as
 // creases and overlaps.
 enum class CutPathKind { seam, required, added };

@@ -27,6 +27,7 @@ from .components import Components, keys_of
 from .cone_choices import best_map, follows_features
 from .divisions import best_division
 from .map_comparison import LEAST_DIRECTION_ERROR, direction_error, follows_strokes_better
+from .marked_seams import MEASURING, along_seams
 from .objective import Objective, Weights
 
 Preset = Literal["paint", "tile", "bake"]
@@ -88,7 +89,7 @@ def preset_options(preset: Preset) -> Options:
         "tile" makes seams invisible for a tileable texture of squares, except where hard parts end at creases that
         cannot run along the tiles; "bake" is for computed textures: it preserves lengths, cuts islands so that they
         fill the square, and hard surfaces at their creases.
-    With every preset no island overlaps itself.  Raises InputError.
+    With every preset no island overlaps itself, unless `seams` is "exact".  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
     return _PRESETS[preset]
@@ -120,6 +121,10 @@ def auto_unwrap(
 
     cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
+    Marked seams are cut. A chart that they bound gets further cuts only if it is no disk, its L2 stretch exceeds
+        `target`, or it overlaps itself, and cones only if cuts alone do not help. With `Options.seams` "exact" there
+        are neither. With given cones, and in seamless layouts, the texture runs on across the seams of components that
+        get cones.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to `target`.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
@@ -153,6 +158,10 @@ def auto_unwrap(
         chosen = options
     arguments.require_callable(progress)
     given = GivenCones.of(cones, angles, count, target)
+    seamed = along_seams(surface, given, chosen, share_of(progress, 0.0, MEASURING))
+    if len(surface.seams):
+        progress = share_of(progress, MEASURING, 1.0)
+    surface, given, chosen = seamed.surface, seamed.given, seamed.options
     choices = CreaseChoices(surface)
     if arguments.flag("creases", creases):
         choices = crease_choices(surface, given, preset, chosen, sharp, share_of(progress, 0.0, 0.0))
@@ -183,7 +192,7 @@ def auto_unwrap(
     surface, result = found[0], found[2]
     if pins is None:
         result = best_division(solvers.of(surface), found[1], result, chosen, objective, mapping)
-    result = replace(result, choices=objective.choices)
+    result = seamed.told(replace(result, choices=objective.choices))
     if packs:
         packing = replace(packing, effort=preset_effort(preset) if effort is None else effort)
         result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
@@ -244,7 +253,7 @@ def crease_choices(
     """
     find_borders = partial(crease_borders, surface, sharp=sharp, progress=share_of(progress, 0.0, 0.0))
     most_corners = _MOST_CORNERS[preset]
-    if options.border != "free" or options.loop_turning:
+    if options.border != "free" or options.loop_turning or options.seams == "exact":
         return CreaseChoices(surface)
     if options.seamless is not None:
         is_free = given.is_free and follows_features(surface, options)

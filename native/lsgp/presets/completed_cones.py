@@ -35,13 +35,15 @@ class GivenCones:
     """Cones that are to be completed.
 
     cones: (k,) int32. angles: one each, None = automatic. count, target: the number on each component, or the stretch
-    that it goes by, as of `place_cones`.
+    that it goes by, as of `place_cones`. without: (m,) bool, the triangles of charts that get none; None: every chart
+    may.
     """
 
     cones: IndexArray
     angles: list[float | None]
     count: int | None = None
     target: float = TARGET
+    without: NDArray[np.bool_] | None = None
 
     @classmethod
     def of(
@@ -130,9 +132,11 @@ def complete_cones(
     progress and errors as of `place_cones`, symmetric as well if no cones are given.
     """
     if not len(given.cones):
-        return _completed(given, options, _place(solver, given, options, progress, symmetric))
+        return _placed(solver, given, options, progress, symmetric)
     ledger = build_ledger(solver.surface, given.cones, given.angles, options, gets_cones=True)
     lacking = [component for component in ledger if _lacks(component)]
+    if given.without is not None:
+        lacking = [component for component in lacking if not given.without[component.triangles].all()]
     # Given cones that no map can have leave other components without: mapping reports the defect of those.
     for components in (lacking, [component for component in lacking if not len(component.cones)]):
         if not components:
@@ -171,6 +175,20 @@ def or_none(attempt: Callable[[], T]) -> T | None:
         raise
     except LsgpError:
         return None
+
+
+def _placed(
+    solver: Solver, given: GivenCones, options: Options, progress: Progress | None, symmetric: bool
+) -> CompletedCones:
+    """Cones where none are given."""
+    if given.without is None or not given.without.any():
+        return _completed(given, options, _place(solver, given, options, progress, symmetric))
+    triangles = np.flatnonzero(~given.without)
+    if not len(triangles):
+        return CompletedCones(given.cones, given.angles, None, given.target)
+    own = Solver(surface_of_triangles(solver.surface, triangles))
+    placed = _place(own, given, options, progress, symmetric)
+    return _completed(given, options, replace(placed, warnings=_renumbered(placed.warnings, triangles)))
 
 
 def _place(

@@ -219,8 +219,8 @@ class _ConeChoice:
         alike = self._alike
         if alike is None:
             alike = self._placed(progress, symmetric=True)
-            placement = alike.placement
-            assert placement is not None
+        placement = alike.placement
+        if self._alike is None and placement is not None:
             surface = self._maps.solver.surface
             odd = [finding.elements.indices for finding in placement.warnings if finding.code == _ODD]
             is_odd = np.zeros(len(surface.triangles), bool)

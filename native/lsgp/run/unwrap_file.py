@@ -39,6 +39,7 @@ from ..presets.auto_unwrap import (
 from ..presets.completed_cones import CompletedCones, GivenCones
 from ..presets.cone_choices import best_map
 from ..presets.divisions import best_division
+from ..presets.marked_seams import along_seams
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
@@ -250,6 +251,9 @@ def _map(
         run.add_seconds(result.stage_seconds)
         return file, result
     cones = GivenCones.of(*given, cone_count(args))
+    with run.stage("charts"):
+        seamed = along_seams(surface, cones, options, share_of(progress, 0.0, 0.0))
+    surface, cones, options = seamed.surface, seamed.given, seamed.options
     choices = CreaseChoices(surface)
     if args.preset is not None and args.creases:
         with run.stage("creases"):
@@ -268,4 +272,4 @@ def _map(
     surface, completed, result = best_for_strokes(surface, options, mapped_with, progress)
     run.surface, run.placement = surface, completed.placement
     result = best_division(solvers.of(surface), completed, result, options, objective, progress)
-    return file, replace(result, choices=objective.choices)
+    return file, seamed.told(replace(result, choices=objective.choices))

@@ -127,8 +127,8 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "--seams",
         choices=get_args(SeamMode),
         default="follow",
-        help="meaning of marked edges: cut, with further cuts where cones need them; open boundaries; or ignored "
-        "(default: follow)",
+        help="meaning of marked edges: follow: cut, others only where parts that they bound, or cones, need it; exact: "
+        "nothing else is cut; boundary: open, also on components with cones; or ignore (default: follow)",
     )
     add_cut_options(unwrap)
     add_features_option(

@@ -248,6 +248,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
 
 ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) try {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
+  require_room_for_cones(seams);
   ConeGains out;
   KeptComponents components(false);
   PlacementWork work({surface, existing, seams, MoreCones::some}, components, out.warnings, progress);

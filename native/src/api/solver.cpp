@@ -59,10 +59,20 @@ void quantize(KeptComponents& kept, const Options& options, MappedComponents& ma
   }
 }
 
+// The options without what would cut more than the seams, where nothing else may be cut.
+Options allowed_by_seams(Options options) {
+  if (options.seams != SeamMode::exact) return options;
+  options.overlaps = Overlaps::keep;
+  options.compact = Compactness::off;
+  options.mirrored_cuts = false;
+  if (options.border == BorderMode::strips) options.border = BorderMode::free;
+  return options;
+}
+
 Result map_components(const KnownSurface& known, const MapRequest& request, const Progress& progress) {
   const Surface& surface = known.surface;
   const Cones& cones = request.cones;
-  const Options& options = request.options;
+  const Options options = allowed_by_seams(request.options);
   const Pins& pins = request.pins;
   KeptComponents& kept = known.components;
   Result result;

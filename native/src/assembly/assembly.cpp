@@ -89,8 +89,8 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
     }
   }
   const PerHalfedge<char>& seam = component.mesh.seam;
-  const bool keeps_islands = options_.compact == Compactness::off || !map.pins.empty() ||
-                             (options_.compact == Compactness::sparing && std::count(seam.begin(), seam.end(), 1) > 0);
+  const bool keeps_islands =
+      options_.compact == Compactness::off || !map.pins.empty() || std::find(seam.begin(), seam.end(), 1) != seam.end();
   if (!keeps_islands) {
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface({component.mesh, geometry}, map),
                               options_.compact};
@@ -307,7 +307,6 @@ PerPart<char> Assembly::find_feature_axes(const Solved& solved) {
 }
 
 void Assembly::add_opened_seams() {
-  if (options_.seams != SeamMode::follow) return;
   Array<std::pair<Index, Index>> sides;  // of borders that are marked, the lower vertex first
   for (const Solved& solved : solved_) {
     const Component& component = *solved.component;

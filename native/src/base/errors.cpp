@@ -28,6 +28,7 @@ const char* name(Code code) {
     case Code::cuts_blocked: return "CUTS_BLOCKED";
     case Code::cut_not_movable: return "CUT_NOT_MOVABLE";
     case Code::open_surface: return "OPEN_SURFACE";
+    case Code::seams_incomplete: return "SEAMS_INCOMPLETE";
     case Code::cone_angle_range: return "CONE_ANGLE_RANGE";
     case Code::gauss_bonnet: return "GAUSS_BONNET";
     case Code::angles_impossible: return "ANGLES_IMPOSSIBLE";
@@ -86,7 +87,8 @@ ErrorKind error_kind(Code code) {
     case Code::too_few_cones:
     case Code::cuts_blocked:
     case Code::cut_not_movable:
-    case Code::open_surface: return ErrorKind::topology;
+    case Code::open_surface:
+    case Code::seams_incomplete: return ErrorKind::topology;
     case Code::cone_angle_range:
     case Code::gauss_bonnet:
     case Code::angles_impossible:

@@ -160,6 +160,9 @@ void report_collapsed(const Topology& topology, std::vector<Finding>& findings) 
   if (!alone.empty()) findings.push_back(left_out(Code::degenerate_mesh, no_area, std::move(alone)));
 }
 
+// Whether seams are boundaries of components without cones.
+bool opens_some(SeamMode seams) { return seams == SeamMode::follow || seams == SeamMode::exact; }
+
 // Builds the components of the surface unless they are up to date.
 void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
   if (!work.topology.components.empty() && work.seams == seams && work.open_seams == open) return;
@@ -168,8 +171,8 @@ void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
   used.positions *= work.unit_scale;
   if (seams == SeamMode::ignore) used.seams.resize(0, 2);
   const bool was_unopened = work.seams == seams && work.open_seams.empty();
-  if (seams != SeamMode::follow || open.empty()) work.unopened.clear();
-  if (seams == SeamMode::follow && !open.empty() && was_unopened) work.unopened = std::move(work.topology.components);
+  if (!opens_some(seams) || open.empty()) work.unopened.clear();
+  if (opens_some(seams) && !open.empty() && was_unopened) work.unopened = std::move(work.topology.components);
   work.found.clear();
   work.topology = build_topology(used, open, work.found);
   report_collapsed(work.topology, work.found);
@@ -216,12 +219,12 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
     split(surface, options.seams, std::move(open), work);
     work.tasks = hand_out(surface, work.topology.components, work.open_seams, cones, options);
   };
-  if (options.seams != SeamMode::follow) {
+  if (!opens_some(options.seams)) {
     const bool opens_all = options.seams == SeamMode::boundary;
     return split_along(opens_all ? OpenSeams(surface.triangles.rows(), 1) : OpenSeams());
   }
   Opened opened;
-  if (work.seams == SeamMode::follow && !work.unopened.empty()) {
+  if (work.seams == options.seams && !work.unopened.empty()) {
     const PerComponent<ComponentTask> tasks = hand_out(surface, work.unopened, {}, cones, options);
     opened = find_opened(surface, work.unopened, tasks, options, more);
   } else {
@@ -235,7 +238,7 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
   }
   split_along(std::move(open));
   const auto report = [&](Array<Index>& triangles, const char* sentence) {
-    if (triangles.empty()) return;
+    if (triangles.empty() || options.seams == SeamMode::exact) return;
     findings.push_back({Code::seams_opened, sentence, {ElementKind::triangles, std::move(triangles)}});
   };
   report(opened.without_cones,
@@ -331,12 +334,13 @@ void become_strip(ComponentTask& tube) {
 
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {
   const HalfedgeMesh& mesh = component.mesh;
-  if (options.seams != SeamMode::follow || !component.orientable || !cones.vertices.empty()) return false;
-  // Straight boundaries need corners, which pieces would not have, and tiles continue across seams.
-  if (!mesh.closed() && (options.border == BorderMode::straight || options.seamless)) return false;
+  if (!opens_some(options.seams) || !component.orientable || !cones.vertices.empty()) return false;
   bool has_seam = false;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) has_seam |= mesh.seam[h] && mesh.twin[h] != none;
-  return has_seam && !(mesh.closed() && mesh.euler == 0 && is_flat_along_seams(mesh));
+  if (!has_seam || options.seams == SeamMode::exact) return has_seam;
+  // Straight boundaries need corners, which pieces would not have, and tiles continue across seams.
+  if (!mesh.closed() && (options.border == BorderMode::straight || options.seamless)) return false;
+  return !(mesh.closed() && mesh.euler == 0 && is_flat_along_seams(mesh));
 }
 
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings) {
@@ -379,6 +383,8 @@ Failure failure_of(const Component& component, const Error& error) {
 
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {
   for (const auto& [component, error] : failures) {
+    const Elements& elements = error.elements();
+    if (error.code() == Code::seams_incomplete) findings.push_back({error.code(), error.what(), elements});
     findings.push_back(left_out(error.code(), error.what(), component->source_triangle));
   }
 }

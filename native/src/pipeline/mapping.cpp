@@ -12,6 +12,7 @@
 #include "pipeline/component_repair.hpp"
 #include "pipeline/component_unfold.hpp"
 #include "pipeline/directed_borders.hpp"
+#include "pipeline/missing_seams.hpp"
 #include "pipeline/straightening.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
@@ -142,8 +143,11 @@ class Mapping {
 };
 
 ComponentMap Mapping::best(std::vector<Finding>& findings) {
+  const bool cuts_seams_only = options_.seams == SeamMode::exact;
+  if (cuts_seams_only) require_opened(system_, task_.cones);
   FoundMap found = find_valid_map(task_);
-  const bool chooses_holes = task_.cones.holes == Holes::where_cheap || task_.cones.holes == Holes::all;
+  const bool may_open = task_.cones.holes == Holes::where_cheap || task_.cones.holes == Holes::all;
+  const bool chooses_holes = may_open && !cuts_seams_only;
   const bool fails_to_close = found.defects() > 0 && repairs_ && closes_holes(found.map) && chooses_holes;
   if (fails_to_close || closes_holes_badly(found)) {
     FoundMap opened = find_valid_map(with_open_holes());
@@ -165,6 +169,7 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
     if (is_relaxed || options_.seamless) straighten(found.map);
     if (options_.seamless) straighten_for_lattice(found.map);
   }
+  if (cuts_seams_only) report_missing_seams(system_, task_, found.map.curvature, found.findings);
   found.map.repair = report_.value_or(RepairReport{});
   findings.insert(findings.end(), found.findings.begin(), found.findings.end());
   return std::move(found.map);
@@ -287,6 +292,7 @@ void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentM
     map.cut_graph = map.flat_cones.empty() ? cuts : keep_cones(mesh, cuts, map.cones);
   }
   map.required_cuts = halfedges_of(map.cut_graph);
+  if (options_.seams == SeamMode::exact) require_seams(mesh, map.required_cuts, !map.cones.empty());
   map.cut_mesh = cut_open(mesh, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task.pinned_corners);
 }

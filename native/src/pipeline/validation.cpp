@@ -341,8 +341,16 @@ void require_valid(const Surface& surface, const Cones& cones) {
          "Give an angle above 0 degrees.");
 }
 
+void require_room_for_cones(SeamMode seams) {
+  if (seams != SeamMode::exact) return;
+  throw Error(Code::wrong_parameter,
+              "Nothing but the marked seams may be cut, so no cones can be placed. Allow automatic cuts besides the "
+              "seams.");
+}
+
 void require_valid(const PlacementOptions& options) {
   require_threads(options.threads);
+  require_room_for_cones(options.seams);
   if (options.count && *options.count < 0) {
     throw Error(Code::wrong_parameter, concat("The number of cones is ", *options.count, ". Give 0 or more."));
   }

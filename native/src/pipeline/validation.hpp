@@ -41,6 +41,9 @@ void require_valid(const Options& options);
 // The same, also for options that are incompatible with pins. Throws PINS_CONFLICT.
 void require_valid(const Options& options, const Pins& pins);
 
+// Throws WRONG_PARAMETER if seams leave no room for cones, which need cuts.
+void require_room_for_cones(SeamMode seams);
+
 // Throws WRONG_PARAMETER.
 void require_valid(const PlacementOptions& options);
 

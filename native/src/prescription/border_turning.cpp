@@ -200,7 +200,6 @@ bool is_planar(const HalfedgeMesh& mesh, const ComponentCones& cones) {
 // The log scale with which all holes of a planar component close, or none if there is none.
 std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const PerLoop<char>& shiftable, Holes holes,
                                                const Eigen::VectorXd& log_scale) {
-  constexpr double cheap = 1.1;      // times the L2 stretch without
   constexpr double worth = 1.5;      // times that with holes whose boundaries have a gap
   constexpr Index most_closed = 20;  // holes; beyond, three back-substitutions each are too many
   const LogScale& scale = loops.scale();
@@ -217,7 +216,7 @@ std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Pe
   auto [closed, shifts] = loops.adjust(log_scale, wanted);
   const auto is_taken = [&](const Eigen::VectorXd& tried) {
     return holes == Holes::all ? tried.maxCoeff() - tried.minCoeff() < wide_range
-                               : scale.predicted_l2(tried) <= cheap * scale.predicted_l2(log_scale);
+                               : scale.predicted_l2(tried) <= cheap_holes * scale.predicted_l2(log_scale);
   };
   if (!is_taken(closed)) return std::nullopt;
   // The map absorbs the small gap where the metric turns nearly once.

@@ -28,6 +28,9 @@ constexpr AngleRange widest_angles{M_PI / 4, 4 * M_PI};
 // An L2 stretch that causes a warning.
 constexpr double high_l2 = 3;
 
+// Holes are closed without a cut up to so many times the L2 stretch with cuts to them.
+constexpr double cheap_holes = 1.1;
+
 // For wider ranges of the log scale, maps without flips can hardly be computed.
 constexpr double wide_range = 15;
 

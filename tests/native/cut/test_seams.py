@@ -66,7 +66,7 @@ def test_seams_as_borders_part_the_surface() -> None:
     result = unwrap(CUBE, seams=ring(CUBE), seams_mode="boundary")
     assert islands_of(result) == 2
     assert result.solved.all()
-    assert not pairs(ring(CUBE)) & pairs(result.cut_edges)  # borders, not cuts
+    assert pairs(result.cut_edges) >= pairs(ring(CUBE))
 
 
 def test_ignored_seams_change_nothing() -> None:
@@ -238,7 +238,7 @@ def test_seams_that_leave_handles_say_which_cuts_open_them() -> None:
     seam = [tuple(meshes.edges_of(mesh.triangles)[0].tolist())]
     result = unwrap(mesh, seams=seam, seams_mode="boundary")
     added = only(result.warnings, "CUTS_ADDED")
-    assert "handles" in added.message and pairs(added.elements.indices) == pairs(result.cut_edges)
+    assert "handles" in added.message and pairs(added.elements.indices) == pairs(result.cut_edges) - pairs(seam)
     assert "CUTS_ADDED" not in codes(unwrap(meshes.torus()).warnings)  # where nothing is marked
 
 
@@ -289,7 +289,7 @@ def test_ring_too_long_for_numbers_is_cut_and_says_so() -> None:
     result = unwrap(mesh, seams=rims, seams_mode="boundary")
     added = only(result.warnings, "CUTS_ADDED")
     assert "stretched too much" in added.message
-    assert pairs(added.elements.indices) == pairs(result.cut_edges)
+    assert pairs(added.elements.indices) == pairs(result.cut_edges) - pairs(rims)
     assert result.flipped.size == 0 and result.distortion.l2_stretch <= 1.01
 
 
