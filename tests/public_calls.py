@@ -98,6 +98,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"least_share": 0.5, "progress": None},
         },
     ),
+    "measure_charts": (lsgp.measure_charts, {"surface": WHOLE, "options": CALL["options"], "progress": None}),
     "find_tubes": (lsgp.find_tubes, {"surface": WHOLE, "cones": BALL.cones, "progress": None}),
     "edge_directions": (lsgp.edge_directions, {"surface": WHOLE, "edges": EDGES[:3], "up": np.array([0.0, 1.0, 0.0])}),
     "feature_edges": (lsgp.feature_edges, {"surface": WHOLE, "angle": 0.3, "seams": True, "borders": True}),

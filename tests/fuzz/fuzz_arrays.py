@@ -27,7 +27,7 @@ from result_check import undeclared_faults
 
 TYPES = ["f8", "f4", "i4", "i8", "u8", "u1", "?", "c16", "O", "S4"]
 LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
-SEAM_MODES = ["follow", "boundary", "ignore"]
+SEAM_MODES = ["follow", "exact", "boundary", "ignore"]
 
 Data = atheris.FuzzedDataProvider
 

@@ -146,7 +146,7 @@ void ask_placement(Bytes& bytes, const lsgp::Surface& surface) {
 
 void ask_gains(Bytes& bytes, const lsgp::Surface& surface) {
   const lsgp::Cones existing = bytes.once_in(2) ? make_cones(bytes, surface) : lsgp::Cones{};
-  const auto seams = bytes.choice<lsgp::SeamMode>(3);
+  const auto seams = bytes.choice<lsgp::SeamMode>(4);
   if (printing()) print(existing), std::printf("# seams: choice %d\n", int(seams)), std::fflush(stdout);
   Patience patience(bytes);
   error_of(surface, [&] {

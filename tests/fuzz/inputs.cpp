@@ -130,7 +130,7 @@ lsgp::Options make_options(Bytes& bytes, const lsgp::Surface& surface) {
   options.prescription = bytes.choice<lsgp::PrescriptionRule>(4);
   options.unfold = bytes.choice<lsgp::UnfoldMethod>(2);
   if (bytes.once_in(8)) options.method = lsgp::Method::lscm;
-  options.seams = bytes.choice<lsgp::SeamMode>(3);
+  options.seams = bytes.choice<lsgp::SeamMode>(4);
   options.border = bytes.choice<lsgp::BorderMode>(3);
   for (int count = bytes.below(8) - 5; count > 0; --count) {
     const Index vertex = bytes.index(surface.positions.rows());
@@ -175,7 +175,7 @@ lsgp::PlacementOptions make_placement_options(Bytes& bytes) {
     for (double& x : options.mirror->point) x = bytes.number();
     for (double& x : options.mirror->normal) x = bytes.number();
   }
-  options.seams = bytes.choice<lsgp::SeamMode>(3);
+  options.seams = bytes.choice<lsgp::SeamMode>(4);
   options.follow_strokes = !bytes.once_in(4);
   return options;
 }

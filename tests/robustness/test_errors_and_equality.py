@@ -75,6 +75,7 @@ def examples() -> list[object]:
         lsgp.cone_gains(whole),
         lsgp.measure_distortion(whole, result.corner_uv),
         lsgp.find_tubes(surface(meshes.cylinder())),
+        lsgp.measure_charts(whole)[0],
         lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
         lsgp.find_stacks(result.corner_uv, result.island),

@@ -85,6 +85,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
     "overlapping_triangles": (_lsgp.overlapping_triangles, (RESULT.corner_uv,)),
     "find_cuts": (_lsgp.find_cuts, (ARRAYS, BALL.cones, OPTIONS, None)),
     "split_into_paths": (_lsgp.split_into_paths, (RESULT.cut_edges, BALL.cones)),
+    "measure_charts": (_lsgp.measure_charts, (ARRAYS, OPTIONS, None)),
     "find_tubes": (_lsgp.find_tubes, (ARRAYS, BALL.cones, None)),
     "crease_borders": (_lsgp.crease_borders, (ARRAYS, BALL.cones, (0.3, EDGES[:3], 2, 0.5), None)),
     "feature_cones": (_lsgp.feature_cones, (ARRAYS, True, None)),

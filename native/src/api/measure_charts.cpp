@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "api/map_surface.hpp"
 #include "assembly/vertex_pairs.hpp"
 #include "base/array.hpp"
+#include "base/progress_monitor.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/missing_seams.hpp"
@@ -50,7 +52,14 @@ VertexPairs cuts_missing_in(const Component& component, const ComponentTask& tas
 }  // namespace
 
 std::vector<Chart> measure_charts(const Surface& surface, const Options& options, const Progress& progress) try {
-  const std::optional<Result> map = map_along_seams(surface, options, progress);
+  constexpr double of_map = 0.8;  // of the time
+  const auto share_of = [&](double begin, double end) -> Progress {
+    if (!progress) return {};
+    return [&progress, begin, end](double done) { return progress(begin + (end - begin) * done); };
+  };
+  const std::optional<Result> map = map_along_seams(surface, options, share_of(0, of_map));
+  StageSeconds seconds;
+  ProgressMonitor monitor(share_of(of_map, 1), seconds);
   Options opened;
   opened.seams = SeamMode::boundary;
   std::vector<Finding> unsaid;
@@ -63,6 +72,7 @@ std::vector<Chart> measure_charts(const Surface& surface, const Options& options
   std::vector<Chart> out;
   for (std::size_t i = 0; i < work.tasks.size(); ++i) {
     const Component& component = work.topology.components[i];
+    monitor.advance(static_cast<double>(i) / static_cast<double>(work.tasks.size()));
     Chart chart;
     chart.triangles = component.source_triangle;
     chart.euler = component.mesh.euler;
@@ -78,6 +88,7 @@ std::vector<Chart> measure_charts(const Surface& surface, const Options& options
     chart.missing = cuts_missing_in(component, work.tasks[i]);
     out.push_back(std::move(chart));
   }
+  monitor.advance(1);
   return out;
 } catch (const Error& error) {
   throw in_words(error);
