@@ -89,7 +89,7 @@ def along_seams(surface: Surface, given: GivenCones, options: Options, progress:
             options = _with_least_stretch(options)
         return replace(unchanged, given=replace(given, without=everywhere), options=options)
     is_plain = options.border != "straight" and not options.loop_turning and options.unfold == "poisson"
-    if options.seams == "ignore" or not len(surface.seams) or not is_plain or options.method != "lsgp":
+    if options.seams != "follow" or not len(surface.seams) or not is_plain or options.method != "lsgp":
         return unchanged
     of_charts = replace(_with_least_stretch(options), seamless=None)
     first, second = share_of(progress, 0.0, 0.5), share_of(progress, 0.5, 1.0)
@@ -101,7 +101,7 @@ def along_seams(surface: Surface, given: GivenCones, options: Options, progress:
         triangles = np.sort(np.concatenate([chart.triangles for chart in lacking]))
         own = surface_of_triangles(opened, triangles)
         is_good[triangles] = _good(measure_charts(own, of_charts, second), own, given.target)
-    is_whole = options.seams == "follow" and (options.seamless is not None or len(given.cones) > 0)
+    is_whole = options.seamless is not None or len(given.cones) > 0
     if is_whole:
         is_good = _in_good_components(surface, given, is_good)
     further = [chart for chart in lacking if is_good[chart.triangles].all()]
@@ -111,9 +111,9 @@ def along_seams(surface: Surface, given: GivenCones, options: Options, progress:
             surface=_with_seams(surface, further),
             further=np.concatenate([chart.missing for chart in further]),
         )
-    if not is_whole and options.seams == "follow":
+    if not is_whole:
         options = replace(options, seams="boundary")
-    if is_whole and options.seamless is not None:
+    elif options.seamless is not None:
         options, is_good = _on_lattice(unchanged.surface, options, is_good, given.target)
     return replace(unchanged, given=replace(given, without=is_good), options=options)
 

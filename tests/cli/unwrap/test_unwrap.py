@@ -365,6 +365,31 @@ def test_automatic_cones_know_what_seams_mean(lsgp, ball_files: Path) -> None:
     assert {mode: len(cones) for mode, cones in placed.items()} == {"boundary": 6, "ignore": 3}
 
 
+@pytest.mark.parametrize("preset", ["paint", "tile", "bake"])
+def test_only_marked_edges_are_cut(lsgp, ball_files: Path, preset: str) -> None:
+    positions, faces = cube(6)
+    edges = {(min(a, b), max(a, b)) for face in faces for a, b in pairwise([*face, face[0]])}
+    # The sides of the former cube.
+    is_side = (np.abs(positions) == np.abs(positions).max()).sum(axis=1) > 1
+    marked = sorted(edge for edge in edges if is_side[list(edge)].all() and _is_along_a_side(positions[list(edge)]))
+    assert len(marked) == 12 * 6
+    (ball_files / "sides.json").write_text(json.dumps(marked))
+    options = ("unwrap", "ball.obj", "--preset", preset, "--seam-edges", "sides.json")
+    for name, how in (("only", ("--seams", "exact")), ("usual", ())):
+        assert lsgp(*options, "-o", f"{name}.obj", *how).code == 0
+    assert cut_edges(ball_files / "only.obj") == set(marked) <= cut_edges(ball_files / "usual.obj")
+    (ball_files / "none.json").write_text("[]")
+    without = ("--seam-edges", "none.json", "--seams", "exact")
+    refused = lsgp("unwrap", "ball.obj", "-o", "no.obj", "--preset", preset, *without)
+    assert refused.code != 0 and "SEAMS_INCOMPLETE" in refused.err and not (ball_files / "no.obj").exists()
+
+
+def _is_along_a_side(ends: np.ndarray) -> bool:
+    """Whether both ends are on one side of a cube."""
+    most = np.abs(ends).max()
+    return bool(((np.abs(ends) == most).all(axis=0) & (ends[0] == ends[1])).sum() >= 2)
+
+
 def test_straight_border_runs_straight_from_cone_to_cone(lsgp, tmp_path: Path) -> None:
     positions, faces = patch()
     (tmp_path / "in.obj").write_text(obj_text(positions, faces))
