@@ -251,9 +251,11 @@ def _map(
         run.add_seconds(result.stage_seconds)
         return file, result
     cones = GivenCones.of(*given, cone_count(args))
-    with run.stage("charts"):
-        seamed = along_seams(surface, cones, options, share_of(progress, 0.0, 0.0))
-    surface, cones, options = seamed.surface, seamed.given, seamed.options
+    seamed = None
+    if args.preset is not None or options.seams == "exact":
+        with run.stage("charts"):
+            seamed = along_seams(surface, cones, options, share_of(progress, 0.0, 0.0))
+        surface, cones, options = seamed.surface, seamed.given, seamed.options
     choices = CreaseChoices(surface)
     if args.preset is not None and args.creases:
         with run.stage("creases"):
@@ -272,4 +274,5 @@ def _map(
     surface, completed, result = best_for_strokes(surface, options, mapped_with, progress)
     run.surface, run.placement = surface, completed.placement
     result = best_division(solvers.of(surface), completed, result, options, objective, progress)
-    return file, seamed.told(replace(result, choices=objective.choices))
+    result = replace(result, choices=objective.choices)
+    return file, result if seamed is None else seamed.told(result)

@@ -66,10 +66,9 @@ struct Request {
 //
 // The meaning of seams is decided here, for all functions. If they are followed, cuts run along them and join cones: a
 // component that has or gets cones stays whole, and its texture continues across its seams. A component without cones
-// is opened along its seams, as an artist who marked seams expects. If nothing else may be cut, the same holds, whatever
-// the component's boundaries and tiles are.
-// earlier: of the same surface, or empty; its topology is reused if it would be the same.
-// Throws what require_valid and build_topology throw, and LOOP_TURNING.
+// is opened along its seams, as an artist who marked seams expects. If nothing else may be cut, the same holds,
+// whatever the component's boundaries and tiles are. earlier: of the same surface, or empty; its topology is reused if
+// it would be the same. Throws what require_valid and build_topology throw, and LOOP_TURNING.
 Work prepare(const Request& request, std::vector<Finding>& findings, const Pins& pins = {}, Work earlier = {});
 
 // The same for cones that are to be placed.
