@@ -5,7 +5,7 @@ import bmesh
 import bpy
 import pytest
 from logged import logged, refused
-from scenes import UvMap, add_ball, add_object, edges_where, edit, mark_seams, snapshot
+from scenes import UvMap, add_object, add_sphere, edges_where, edit, mark_seams, snapshot
 
 PRESETS = ["PAINT", "TILE", "BAKE"]
 SIDES, RINGS = 12, 4
@@ -37,7 +37,8 @@ def test_seams_that_suffice_are_all_that_is_cut(preset, seams):
     assert uv_map.split_edges() == rims | line and uv_map.islands() == 3
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+# With Tile the texture is upright on the wall, which no ring can be.
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
 def test_the_edges_that_are_missing_are_selected(preset):
     can, rims, _ = add_can()
     mark_seams(can, rims)
@@ -58,7 +59,7 @@ def test_the_edges_that_are_missing_are_selected(preset):
 
 
 def test_what_no_seam_opens_is_refused_and_nothing_changes():
-    ball = add_ball()
+    ball = add_sphere()
     before = snapshot(ball)
     with refused("SEAMS_INCOMPLETE", match="no marked seam opens it"):
         bpy.ops.uv.cone_auto_unwrap(seams="EXACT")
