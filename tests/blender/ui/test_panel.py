@@ -29,7 +29,7 @@ class RecordingLayout:
         self.drawn, self.active, self.is_open = drawn, active, is_open
         self.use_property_split = False
 
-    def _part(self):
+    def _part(self, **_options):
         return RecordingLayout(self.drawn, self.active, self.is_open)
 
     row = column = box = _part
@@ -44,6 +44,9 @@ class RecordingLayout:
         pass
 
     def prop(self, _owner, name, expand=False, text=""):
+        self.drawn[name] = self.active
+
+    def prop_enum(self, _owner, name, _value):
         self.drawn[name] = self.active
 
     def prop_search(self, _owner, name, *_where):
