@@ -24,7 +24,6 @@ FloatArray = NDArray[np.float64]
 # Texels of the square's side, of packers that take margins as whole texels.
 TEXTURE = 1024
 CALIBRATIONS = 3
-SECONDS_OF_BEST = 10
 # Strips are packed one after the other, each as high as would make the last one a square.
 STRIPS, SECONDS_EACH = 4, 3
 
@@ -135,7 +134,7 @@ def by_blender(uv: FloatArray, island: NDArray[np.int32], margin: float) -> Floa
 PACKERS: dict[str, Callable[..., FloatArray]] = {
     "lsgp, quick": lambda *kit: by_lsgp(*kit, effort="quick"),
     "lsgp, good": lambda *kit: by_lsgp(*kit, effort="good"),
-    "lsgp, best": lambda *kit: by_lsgp(*kit, effort="best", seconds=SECONDS_OF_BEST),
+    "lsgp, best": lambda *kit: by_lsgp(*kit, effort="best"),
     "xatlas": lambda *kit: by_xatlas(*kit, brute_force=False),
     "xatlas, brute force": lambda *kit: by_xatlas(*kit, brute_force=True),
     "Blender": by_blender,
