@@ -119,12 +119,13 @@ def auto_unwrap(
 ) -> Result:
     """Unwrap a surface ready for use: place missing cones and apply a preset.
 
+    Marked seams are cut. A chart that they bound gets further cuts only if it is no disk, its L2 stretch exceeds the
+    target, or it overlaps itself, and cones only if cuts alone do not help. With `Options.seams` "exact" there are
+    neither. With given cones, and in seamless layouts, the texture runs on across the seams of components that get
+    cones.
+
     cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
-    Marked seams are cut. A chart that they bound gets further cuts only if it is no disk, its L2 stretch exceeds
-        `target`, or it overlaps itself, and cones only if cuts alone do not help. With `Options.seams` "exact" there
-        are neither. With given cones, and in seamless layouts, the texture runs on across the seams of components that
-        get cones.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to `target`.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
