@@ -288,11 +288,13 @@ lsgp::Options to_options(const py::dict& values) {
   const auto text = [&](const char* field) { return values[field].cast<std::string>(); };
   lsgp::Options options;
   using lsgp::Method, lsgp::PrescriptionRule, lsgp::UnfoldMethod;
-  options.prescription =
-      choose<PrescriptionRule>(text("prescription"), {{"least-distortion", PrescriptionRule::least_distortion},
-                                                      {"harmonic", PrescriptionRule::harmonic},
-                                                      {"straightness", PrescriptionRule::straightness},
-                                                      {"manual", PrescriptionRule::manual}});
+  if (!values["prescription"].is_none()) {
+    options.prescription =
+        choose<PrescriptionRule>(text("prescription"), {{"least-distortion", PrescriptionRule::least_distortion},
+                                                        {"harmonic", PrescriptionRule::harmonic},
+                                                        {"straightness", PrescriptionRule::straightness},
+                                                        {"manual", PrescriptionRule::manual}});
+  }
   options.unfold =
       choose<UnfoldMethod>(text("unfold"), {{"poisson", UnfoldMethod::poisson}, {"spectral", UnfoldMethod::spectral}});
   options.method = choose<Method>(text("method"), {{"lsgp", Method::lsgp}, {"lscm", Method::lscm}});
@@ -317,6 +319,13 @@ lsgp::Options to_options(const py::dict& values) {
       {{"automatic", Factorization::automatic}, {"cut", Factorization::cut}, {"sparse", Factorization::sparse}});
   options.threads = values["threads"].cast<int>();
   if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
+  return options;
+}
+
+// The same, of maps whose rule for angles follows from their cones where the dictionary has none.
+lsgp::MapOptions to_map_options(const py::dict& values) {
+  lsgp::MapOptions options{to_options(values), {}};
+  if (!values["prescription"].is_none()) options.prescription = options.of_map.prescription;
   return options;
 }
 
@@ -682,6 +691,106 @@ py::dict measure_distortion(const SurfaceArrays& surface_arrays, const FloatArra
   return out;
 }
 
+lsgp::CompletedCones complete_cones(lsgp::Solver& solver, const ConeArrays& cones, std::optional<int> count,
+                                    double target, const py::dict& option_values, const ProgressCallback& progress) {
+  const lsgp::Cones given = to_cones(cones);
+  const lsgp::CompletionOptions completion{count, target, false, {}};
+  const lsgp::MapOptions options = to_map_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  return without_gil([&] { return lsgp::complete_cones(solver, given, completion, options, tell); });
+}
+
+std::optional<lsgp::CompletedCones> complete_feature_cones(lsgp::Solver& solver, double target,
+                                                           const py::dict& option_values,
+                                                           const ProgressCallback& progress) {
+  const lsgp::MapOptions options = to_map_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  return without_gil([&] { return lsgp::complete_feature_cones(solver, options, target, tell); });
+}
+
+// The map, and as "told" the findings of it and of the placement of its cones.
+py::dict parameterize_through(lsgp::Solver& solver, const lsgp::CompletedCones& cones, const py::dict& option_values,
+                              const ProgressCallback& progress) {
+  const lsgp::Options options = to_map_options(option_values).through(cones.cones);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Result result = without_gil([&] { return solver.parameterize(cones.cones, options, {}, tell); });
+  py::dict out = to_dict(result);
+  out["told"] = to_findings(lsgp::findings_of(cones, result, options));
+  return out;
+}
+
+lsgp::Preset to_preset(const std::string& name) {
+  return choose<lsgp::Preset>(
+      name, {{"paint", lsgp::Preset::paint}, {"tile", lsgp::Preset::tile}, {"bake", lsgp::Preset::bake}});
+}
+
+lsgp::Weights to_weights(const py::dict& values) {
+  const auto weight = [&](const char* name) { return values[name].cast<double>(); };
+  return {weight("islands"), weight("cuts"), weight("borders"), weight("cones"), weight("square"), weight("symmetry")};
+}
+
+// What a preset changes of the options of a map, its weights, and how long it looks for a layout.
+py::dict preset(const std::string& name) {
+  const lsgp::Preset chosen = to_preset(name);
+  const lsgp::Options options = lsgp::preset_options(chosen).of_map;
+  const lsgp::Weights weights = lsgp::preset_weights(chosen);
+  using lsgp::Compactness, lsgp::Mode, lsgp::Overlaps;
+  constexpr std::array compact{"off", "sparing", "full"}, efforts{"quick", "good", "best"};
+  py::dict of_map, of_weights, out;
+  of_map["mode"] = options.mode == Mode::low_stretch ? "low-stretch" : "conformal";
+  of_map["straighten"] = options.straighten;
+  of_map["overlaps"] = options.overlaps == Overlaps::split ? "split" : "keep";
+  of_map["compact"] = compact[static_cast<std::size_t>(options.compact)];
+  of_weights["islands"] = weights.islands;
+  of_weights["cuts"] = weights.cuts;
+  of_weights["borders"] = weights.borders;
+  of_weights["cones"] = weights.cones;
+  of_weights["square"] = weights.square;
+  of_weights["symmetry"] = weights.symmetry;
+  out["options"] = of_map;
+  out["is_seamless"] = options.seamless.has_value();
+  out["weights"] = of_weights;
+  out["effort"] = efforts[static_cast<std::size_t>(lsgp::preset_effort(chosen))];
+  return out;
+}
+
+// A dictionary with the arguments of lsgp.auto_unwrap that have a part in the choice.
+lsgp::AutoUnwrapOptions to_auto_unwrap_options(const py::dict& values) {
+  lsgp::AutoUnwrapOptions options;
+  options.preset = to_preset(values["preset"].cast<std::string>());
+  options.map = to_map_options(values["options"].cast<py::dict>());
+  options.weights = to_weights(values["weights"].cast<py::dict>());
+  options.count = values["count"].cast<std::optional<int>>();
+  options.target = values["target"].cast<double>();
+  options.symmetric = values["symmetric"].cast<bool>();
+  options.charts = values["charts"].cast<bool>();
+  options.creases = values["creases"].cast<bool>();
+  options.pack = false;
+  return options;
+}
+
+// The map, where its surface ends, the placement of its cones, and what it was chosen from.
+py::dict auto_unwrap(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const IndexArray& sharp,
+                     const py::dict& option_values, const PinArrays& pin_arrays, const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones given = to_cones(cones);
+  lsgp::AutoUnwrapOptions options = to_auto_unwrap_options(option_values);
+  options.sharp = to_matrix<lsgp::VertexPairs>("sharp", sharp);
+  const lsgp::Pins pins = to_pins(pin_arrays);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Unwrapped found = without_gil([&] { return lsgp::auto_unwrap(surface, given, options, pins, tell); });
+  py::list choices;
+  for (const lsgp::Choice& choice : found.choices) {
+    choices.append(py::make_tuple(choice.name, choice.estimate, choice.cost, choice.reason, choice.is_best));
+  }
+  py::dict out;
+  out["result"] = to_dict(found.result);
+  out["borders"] = to_array(found.borders);
+  out["placement"] = found.placement ? py::object(to_dict(*found.placement)) : py::none();
+  out["choices"] = choices;
+  return out;
+}
+
 void require_closed(const SurfaceArrays& surface_arrays) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   without_gil([&] { lsgp::require_closed(surface); });
@@ -789,6 +898,12 @@ PYBIND11_MODULE(_lsgp, module) {
   define_ear_clipping(module);
   define_polygons(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
+  py::class_<lsgp::CompletedCones>(module, "CompletedCones")
+      .def_property_readonly("cones", [](const lsgp::CompletedCones& of) { return to_array(of.cones.vertices); })
+      .def_property_readonly("angles", [](const lsgp::CompletedCones& of) { return of.cones.angles; })
+      .def_property_readonly("placement", [](const lsgp::CompletedCones& of) {
+        return of.placement ? std::optional<py::dict>(to_dict(*of.placement)) : std::nullopt;
+      });
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface, const lsgp::Solver* earlier) {
              return earlier == nullptr ? lsgp::Solver(to_surface(surface))
@@ -796,7 +911,10 @@ PYBIND11_MODULE(_lsgp, module) {
            }),
            "surface"_a, "earlier"_a)
       .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a)
-      .def("place_cones", &place_cones_again, "cones"_a, "options"_a, "progress"_a);
+      .def("place_cones", &place_cones_again, "cones"_a, "options"_a, "progress"_a)
+      .def("complete_cones", &complete_cones, "cones"_a, "count"_a, "target"_a, "options"_a, "progress"_a)
+      .def("complete_feature_cones", &complete_feature_cones, "target"_a, "options"_a, "progress"_a)
+      .def("parameterize_through", &parameterize_through, "cones"_a, "options"_a, "progress"_a);
   py::class_<lsgp::Preview>(module, "Preview")
       .def(py::init([](const SurfaceArrays& surface, Index triangles, const ProgressCallback& progress) {
              lsgp::Surface given = to_surface(surface);
@@ -819,6 +937,8 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
   module.def("measure_charts", &measure_charts, "surface"_a, "options"_a, "progress"_a);
+  module.def("preset", &preset, "name"_a);
+  module.def("auto_unwrap", &auto_unwrap, "surface"_a, "cones"_a, "sharp"_a, "options"_a, "pins"_a, "progress"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);

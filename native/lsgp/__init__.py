@@ -72,8 +72,7 @@ from .layouts.stacking import Stacks, find_stacks
 from .layouts.texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .options import Options, Seamless
-from .presets.auto_unwrap import auto_unwrap, preset_options, preset_weights
-from .presets.objective import Weights
+from .presets.auto_unwrap import Weights, auto_unwrap, preset_options, preset_weights
 from .quads.quad_mesh import QuadMesh, QuadQuality, extract_quads, quad_quality
 from .quads.remeshing import QuadRemesh, remesh_to_quads
 from .results import (

@@ -59,7 +59,7 @@ def parameterize(
     """
     arrays = surface_arrays(surface)
     out = _lsgp.parameterize(arrays, *_call(cones, angles, options, pins, progress))
-    return _to_result(out, surface.borders)
+    return to_result(out, surface.borders)
 
 
 class Solver:
@@ -99,7 +99,7 @@ class Solver:
     ) -> Result:
         """Arguments, result and errors as for `lsgp.parameterize`."""
         out = self._solver.parameterize(*_call(cones, angles, options, pins, progress))
-        return _to_result(out, self._surface.borders)
+        return to_result(out, self._surface.borders)
 
     def place_cones(
         self,
@@ -153,7 +153,7 @@ class Preview:
         """
         arguments.require_callable(progress)
         out = self._preview.parameterize(*cone_arrays(cones, angles, options), progress)
-        return _to_result(out, self._surface.borders)
+        return to_result(out, self._surface.borders)
 
 
 def _call(
@@ -164,13 +164,16 @@ def _call(
     progress: Progress | None,
 ) -> tuple[Any, ...]:
     arguments.require_callable(progress)
+    return *cone_arrays(cones, angles, options), pin_arrays(pins), progress
+
+
+def pin_arrays(pins: Pins | None) -> tuple[IndexArray, FloatArray]:
     if not (pins is None or isinstance(pins, Pins)):
         arguments.refuse("pins", pins, "pass Pins, or None")
-    pin_arrays = (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
-    return *cone_arrays(cones, angles, options), pin_arrays, progress
+    return (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
 
 
-def _to_result(out: dict[str, Any], borders: IndexArray) -> Result:
+def to_result(out: dict[str, Any], borders: IndexArray) -> Result:
     out["repair"] = RepairReport(**out["repair"])
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
@@ -373,7 +376,7 @@ def place_cones(
         "border": border,
         "threads": thread_count(threads),
     }
-    given = _given_cones(cones, angles)
+    given = given_cones(cones, angles)
     if isinstance(surface, Solver):
         return Placement(**surface._solver.place_cones(given, options, progress))
     return Placement(**_lsgp.place_cones(surface_arrays(surface), given, options, progress))
@@ -390,7 +393,7 @@ def cone_gains(
     """The predicted stretch with one more cone, for every vertex.  Arguments and errors as in `place_cones`."""
     arguments.require_callable(progress)
     arguments.require_choice("seams", seams, get_args(SeamMode))
-    return ConeGains(**_lsgp.cone_gains(surface_arrays(surface), _given_cones(cones, angles), seams, progress))
+    return ConeGains(**_lsgp.cone_gains(surface_arrays(surface), given_cones(cones, angles), seams, progress))
 
 
 def measure_distortion(
@@ -417,7 +420,7 @@ def measure_distortion(
     return Measurement(**out)
 
 
-def _given_cones(
+def given_cones(
     cones: ArrayLike, angles: Sequence[float | None] | FloatArray | None
 ) -> tuple[IndexArray, FloatArray, NDArray[np.bool_]]:
     """Vertices, angles, and which of them are given."""
@@ -438,7 +441,11 @@ def cone_arrays(
 ) -> tuple[tuple[IndexArray, FloatArray, NDArray[np.bool_]], dict[str, Any]]:
     """The cones, and the options with the rule for the angles that are not given."""
     arguments.require_type("options", options, Options)
-    given = _given_cones(cones, angles)
+    given = given_cones(cones, angles)
     rule = options.prescription or ("manual" if given[2].any() else "least-distortion")
-    seamless = None if options.seamless is None else vars(options.seamless)
-    return given, {**vars(options), "prescription": rule, "seamless": seamless}
+    return given, {**option_values(options), "prescription": rule}
+
+
+def option_values(options: Options) -> dict[str, Any]:
+    """Where its rule for the angles is None, it follows from the cones."""
+    return {**vars(options), "seamless": None if options.seamless is None else vars(options.seamless)}

@@ -200,6 +200,12 @@ SOURCES = {
         *("pipeline", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
     ),
     "api": (),
+    # It makes maps by the public functions.
+    "unwrap": (
+        *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
+        *("repair", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
+        *("packing", "api"),
+    ),
 }
 
 
@@ -269,7 +275,7 @@ TREES = (
             Room("images", ("images/*",), ("base", "API")),
             Room("layouts", ("layouts/*",), ("base", "API")),
             Room("presets", ("presets/*",), ("base", "API", "layouts")),
-            Room("quads", ("quads/*",), ("base", "API", "presets")),
+            Room("quads", ("quads/*",), ("base", "API")),
             Room("io", ("io/*",), ("base", "API")),
             Room("package", ("__init__.py",), LIBRARY),
             Room("run", ("run/*",), LIBRARY),

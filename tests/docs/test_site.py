@@ -57,12 +57,13 @@ def test_reference_of_cpp_refuses_a_comment_that_doxygen_warns_of(tmp_path, monk
         cpp_reference.write(tmp_path)
 
 
-def test_page_of_cpp_has_every_header_and_shows_a_program_that_is_tested():
+def test_page_of_cpp_has_every_header_and_shows_programs_that_are_tested():
     page = (DOCS / "reference" / "cpp.md").read_text(encoding="utf-8")
     assert sorted(re.findall(r"^\| \[`(\w+)\.hpp`\]", page, re.MULTILINE)) == PUBLIC_HEADERS
-    program = re.search(r"^```cpp\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]
-    tested = (ROOT / "tests" / "packaging" / "consumer" / "main.cpp").read_text(encoding="utf-8")
-    assert tested == f"// SPDX-License-Identifier: GPL-3.0-or-later\n{program}"
+    programs = re.findall(r"^```cpp\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    for program, name in zip(programs, ("main.cpp", "press.cpp"), strict=True):
+        tested = (ROOT / "tests" / "packaging" / "consumer" / name).read_text(encoding="utf-8")
+        assert tested == f"// SPDX-License-Identifier: GPL-3.0-or-later\n{program}"
 
 
 def test_every_page_is_in_the_index_and_in_the_navigation():

@@ -59,6 +59,11 @@ def test_a_program_builds_against_the_installed_library_and_runs(prefix, tmp_pat
     done = subprocess.run([tmp_path / "consumer"], capture_output=True, text=True, timeout=60, check=True)
     # The four corners of a regular tetrahedron share its curvature of 4 pi.
     assert [float(line) for line in done.stdout.split()] == pytest.approx([pi] * 4, abs=1e-8)
+    done = subprocess.run([tmp_path / "press"], capture_output=True, text=True, timeout=60, check=True)
+    stretch, *choices = done.stdout.splitlines()
+    # A regular tetrahedron has a map without distortion, as one island.
+    assert float(stretch.removeprefix("L2 stretch ")) == pytest.approx(1, abs=1e-6)
+    assert any(line.startswith("* ") and " 1 island," in line for line in choices)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of shared libraries are the system's")

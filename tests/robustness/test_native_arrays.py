@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from typing import Any
 
 import lsgp
@@ -15,7 +16,7 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import _lsgp, errors
-from lsgp.api import cone_arrays
+from lsgp.api import cone_arrays, option_values
 from lsgp.surface import surface_arrays
 from map_checks import surface
 from public_calls import EXTREMES, other_arrays
@@ -34,6 +35,13 @@ PACKING = {
     **{"margin": 0.01, "fill": True, "turns": "any", "effort": "quick", "seconds": None, "area": None, "tiles": 1},
     **{"snap": 0.0, "groups": np.zeros(0, np.int32), "locks": np.zeros((0, 3), bool)},
 }
+MAP = option_values(lsgp.Options())
+CHOOSING = {
+    **{"preset": "paint", "options": option_values(lsgp.preset_options("paint")), "count": 4, "target": 1.05},
+    **{"weights": asdict(lsgp.Weights()), "symmetric": True, "charts": True, "creases": True},
+}
+SOLVER = _lsgp.Solver(ARRAYS, None)
+COMPLETED = SOLVER.complete_cones(CONES, None, 1.05, MAP, None)
 PINS = (np.array([0, 5], np.int32), np.eye(2))
 NONE = np.empty((0, 2), np.int32)
 TEXT = b"f 1/2 3/4 5\n"
@@ -74,7 +82,12 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
         (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), PACKING, None),
     ),
     "parameterize": (_lsgp.parameterize, (ARRAYS, CONES, OPTIONS, PINS, None)),
+    "preset": (_lsgp.preset, ("paint",)),
+    "auto_unwrap": (_lsgp.auto_unwrap, (ARRAYS, CONES, EDGES[:3], CHOOSING, PINS, None)),
     "Solver": (_lsgp.Solver, (ARRAYS, None)),
+    "Solver.complete_cones": (SOLVER.complete_cones, (CONES, 4, 1.05, MAP, None)),
+    "Solver.complete_feature_cones": (SOLVER.complete_feature_cones, (1.05, MAP, None)),
+    "Solver.parameterize_through": (SOLVER.parameterize_through, (COMPLETED, MAP, None)),
     "Solver.parameterize": (_lsgp.Solver(ARRAYS, None).parameterize, (CONES, OPTIONS, PINS, None)),
     "Solver.place_cones": (_lsgp.Solver(ARRAYS, None).place_cones, (CONES, PLACEMENT, None)),
     "Preview": (_lsgp.Preview, SMALL_SURFACE),
@@ -129,7 +142,7 @@ def test_all_functions_are_listed() -> None:
             found |= {*constructor, *(f"{name}.{method}" for method in methods)}
         elif callable(value):
             found.add(name)
-    assert found - {"GrabbedCut"} == FUNCTIONS.keys()
+    assert found - {"GrabbedCut", "CompletedCones"} == FUNCTIONS.keys()
 
 
 @pytest.mark.slow

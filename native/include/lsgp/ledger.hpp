@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "lsgp/export.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
@@ -22,6 +23,9 @@ struct LedgerPart {
   bool border_takes_up = false;   // a free boundary takes up the remaining curvature
   std::array<double, 2> room{};   // least and most curvature that automatic cones can take up together
 };
+
+// Whether angles of the automatic cones exist with which the budget of a component closes.
+LSGP_API bool closes(const LedgerPart& part);
 
 // Which components: those that parameterize solves separately, or those of place_cones and cone_gains. They differ if a
 // component without cones is opened along its seams: its first cone makes it whole.

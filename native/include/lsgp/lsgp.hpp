@@ -5,6 +5,8 @@
 // All functions throw Error and do not modify their arguments; all are deterministic and safe to call from any thread.
 #pragma once
 
+#include "lsgp/auto_unwrap.hpp"
+#include "lsgp/completed_cones.hpp"
 #include "lsgp/crease_borders.hpp"
 #include "lsgp/cut_costs.hpp"
 #include "lsgp/cut_router.hpp"

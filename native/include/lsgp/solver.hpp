@@ -28,6 +28,8 @@ class LSGP_API Solver {
   ~Solver();
   Solver(Solver&&) noexcept;
 
+  const Surface& surface() const { return surface_; }
+
   Result parameterize(const Cones& cones, const Options& options = {}, const Pins& pins = {},
                       const Progress& progress = {});
   Placement place_cones(const Cones& existing = {}, const PlacementOptions& options = {},

@@ -1,85 +1,77 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a surface to a finished map in one call: presets, and automatic cones if the given ones do not suffice."""
+"""From a surface to a finished map in one call: the library's choice among maps, and where their islands lie."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..api import Solver, crease_borders
+from .. import _lsgp
+from ..api import given_cones, option_values, pin_arrays, to_result
 from ..base import arguments
-from ..base.arguments import FloatArray, IndexArray
-from ..base.progress import Progress, share_of, tell
-from ..errors import InputError, SolverError
+from ..base.arguments import FloatArray
+from ..base.progress import Progress, share_of
+from ..errors import InputError
 from ..layouts.packing import Effort, Pack, Packing, Stack, laid_out
 from ..layouts.texels import TexelLayout, at_texel_density, refuse_of_seamless, with_tiny_findings
 from ..options import Options, Seamless
-from ..results import Result
-from ..surface import Pins, Surface, has_strokes
-from .border_gains import AlongLattice, BorderGain, LowerCost
-from .completed_cones import TARGET, CompletedCones, GivenCones, or_none
-from .components import Components, keys_of
-from .cone_choices import best_map, follows_features
-from .divisions import best_division
-from .map_comparison import LEAST_DIRECTION_ERROR, direction_error, follows_strokes_better
-from .marked_seams import MEASURING, along_seams
-from .objective import Objective, Weights
+from ..results import Choice, Placement, Result
+from ..surface import Pins, Surface, surface_arrays
 
 Preset = Literal["paint", "tile", "bake"]
 
-Mapped = tuple[Surface, CompletedCones, Result]
-MakeMap = Callable[[Surface, Progress | None], tuple[CompletedCones, Result]]
-
-# And with making the map, where islands are packed afterward.
+# The stretch of the map that automatic cones are to reach, as of `place_cones`.
+TARGET = 1.05
+# Of the time of a press: choosing the map, where islands are packed afterward.
 PACKING = 0.9
-# Of the time of cones and maps: where those without further borders are made.
-_TRYING = 0.5
-# Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
-# well and the texture runs on; None: it runs on wherever creases run along the tiles.
-_MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
-# Other components may end there, too, where creases carry this share of their curvature, if their map gains by it.
-_LEAST_SHARE_TO_TRY = 0.5
-
-# Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
-# layout show nowhere.
-_PRESETS: dict[Preset, Options] = {
-    "paint": Options(mode="low-stretch", straighten=True, overlaps="split", compact="sparing"),
-    "tile": Options(seamless=Seamless(lattice="square"), straighten=True, overlaps="split"),
-    "bake": Options(mode="low-stretch", straighten=True, overlaps="split", compact="full"),
-}
 
 
-_WEIGHTS: dict[Preset, Weights] = {
-    "paint": Weights(),
-    "tile": Weights(),
-    "bake": Weights(islands=0.1, cuts=0.05, borders=0.0, cones=0.0),
-}
-# A longer search fills 1 % more with the few islands of "paint", 3 % with those of "bake".
-_EFFORTS: dict[Preset, Effort] = {"paint": "quick", "tile": "good", "bake": "good"}
+@dataclass(frozen=True, slots=True)
+class Weights:
+    """What the parts of a map's quality are worth in a choice, in hundredths of L2 stretch.
+
+    islands: each one; a tenth of them where there are more than ten. cuts: those as long as the square root of the
+    surface's area. borders: the same at creases, across which the texture does not run on. cones: each one, around
+    which it turns; of several components by the square root of their share of the area. square: as much of the texture
+    as islands fill, left empty. symmetry: that cuts run alike on both sides of a mirror plane; half of it, that cones
+    do.
+
+    A larger weight is obeyed at the cost of the others, 0 is no wish at all.  Raises InputError.
+    """
+
+    islands: float = 0.4
+    cuts: float = 0.3
+    borders: float = 0.3
+    cones: float = 0.1
+    square: float = 1.2
+    symmetry: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            remedy = "pass a finite number that is not negative"
+            if not 0 <= arguments.number(f"weights.{name}", getattr(self, name), remedy) < math.inf:
+                arguments.refuse(f"weights.{name}", getattr(self, name), remedy)
+
+
+_ROWS = {preset: _lsgp.preset(preset) for preset in get_args(Preset)}
+_EFFORTS: dict[Preset, Effort] = {preset: row["effort"] for preset, row in _ROWS.items()}
 
 
 def preset_weights(preset: Preset) -> Weights:
     """What a preset of `auto_unwrap` chooses by; `dataclasses.replace` changes some of it.  Raises InputError."""
     arguments.require_choice("preset", preset, get_args(Preset))
-    return _WEIGHTS[preset]
+    return Weights(**_ROWS[preset]["weights"])
 
 
 def preset_effort(preset: Preset) -> Effort:
     """How long a preset of `auto_unwrap` looks for a layout, as of `pack_islands`.  Raises InputError."""
     arguments.require_choice("preset", preset, get_args(Preset))
     return _EFFORTS[preset]
-
-
-def objective_of(preset: Preset, options: Options, weights: Weights | None = None) -> Objective:
-    """By which the maps of a preset with these options are compared; weights: None for those of the preset."""
-    if weights is not None:
-        arguments.require_type("weights", weights, Weights)
-    return Objective(_WEIGHTS[preset] if weights is None else weights, options.square_share)
 
 
 def preset_options(preset: Preset) -> Options:
@@ -92,7 +84,74 @@ def preset_options(preset: Preset) -> Options:
     With every preset no island overlaps itself, unless `seams` is "exact".  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
-    return _PRESETS[preset]
+    row = _ROWS[preset]
+    return Options(seamless=Seamless() if row["is_seamless"] else None, **row["options"])
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenMap:
+    """A map as it is chosen, with its islands side by side.
+
+    surface: with the borders of the map. placement: of automatic cones; None without.
+    """
+
+    surface: Surface
+    result: Result
+    placement: Placement | None
+
+
+def choose_map(
+    surface: Surface,
+    cones: ArrayLike = (),
+    angles: Sequence[float | None] | FloatArray | None = None,
+    *,
+    preset: Preset = "paint",
+    options: Options | None = None,
+    count: int | None = None,
+    target: float = TARGET,
+    symmetric: bool = True,
+    charts: bool = True,
+    creases: bool = True,
+    sharp: ArrayLike | None = None,
+    pins: Pins | None = None,
+    weights: Weights | None = None,
+    progress: Progress | None = None,
+) -> ChosenMap:
+    """The map of `auto_unwrap`, which takes the same arguments and raises the same errors.
+
+    charts: whether charts that marked seams bound get cones and cuts only where they need some.
+    """
+    chosen, chosen_weights = preset_options(preset), preset_weights(preset)
+    if options is not None:
+        arguments.require_type("options", options, Options)
+        chosen = options
+    if weights is not None:
+        arguments.require_type("weights", weights, Weights)
+        chosen_weights = weights
+    arguments.require_callable(progress)
+    remedy = "pass an L2 stretch, a finite number above 1"
+    if not 1 < arguments.number("target", target, remedy) < math.inf:
+        arguments.refuse("target", target, remedy)
+    if count is not None:
+        count = arguments.whole_number("count", count, 0, "pass a number of cones, or None for automatic")
+    if count is not None and chosen.seams == "exact":
+        arguments.refuse("count", count, 'leave it out: with the seams "exact" no cones are placed')
+    values = {
+        "preset": preset,
+        "options": option_values(chosen),
+        "weights": asdict(chosen_weights),
+        "count": count,
+        "target": float(target),
+        "symmetric": arguments.flag("symmetric", symmetric),
+        "charts": charts,
+        "creases": arguments.flag("creases", creases),
+    }
+    marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
+    given = given_cones(cones, angles)
+    found = _lsgp.auto_unwrap(surface_arrays(surface), given, marked, values, pin_arrays(pins), progress)
+    placement = None if found["placement"] is None else Placement(**found["placement"])
+    result = replace(to_result(found["result"], found["borders"]), choices=[Choice(*one) for one in found["choices"]])
+    return ChosenMap(replace(surface, borders=found["borders"]), result, placement)
 
 
 def auto_unwrap(
@@ -157,17 +216,6 @@ def auto_unwrap(
     if options is not None:
         arguments.require_type("options", options, Options)
         chosen = options
-    arguments.require_callable(progress)
-    given = GivenCones.of(cones, angles, count, target)
-    seamed = along_seams(surface, given, chosen, share_of(progress, 0.0, MEASURING))
-    if len(surface.seams):
-        progress = share_of(progress, MEASURING, 1.0)
-    surface, given, chosen = seamed.surface, seamed.given, seamed.options
-    choices = CreaseChoices(surface)
-    if arguments.flag("creases", creases):
-        choices = crease_choices(surface, given, preset, chosen, sharp, share_of(progress, 0.0, 0.0))
-    if pins is not None:
-        choices = replace(choices, possible=None)
     if texels is not None:
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
@@ -178,27 +226,19 @@ def auto_unwrap(
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
-    is_free = arguments.flag("symmetric", symmetric) and count is None
-    solvers = Solvers()
-    objective = objective_of(preset, chosen, weights)
-
-    def mapped(options: Options, progress: Progress | None) -> Mapped:
-        def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-            return best_map(solvers.of(opened), given, options, objective, pins, share, symmetric=is_free)
-
-        return best_at_creases(choices, options, objective, make, progress)
-
-    mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
-    found = best_for_strokes(surface, chosen, mapped, mapping)
-    surface, result = found[0], found[2]
-    if pins is None:
-        result = best_division(solvers.of(surface), found[1], result, chosen, objective, mapping)
-    result = seamed.told(replace(result, choices=objective.choices))
+    arguments.require_callable(progress)
+    found = choose_map(
+        *(surface, cones, angles),
+        **{"preset": preset, "options": chosen, "count": count, "target": target, "symmetric": symmetric},
+        **{"creases": creases, "sharp": sharp, "pins": pins, "weights": weights},
+        progress=share_of(progress, 0.0, PACKING if packs else 1.0),
+    )
+    result = found.result
     if packs:
         packing = replace(packing, effort=preset_effort(preset) if effort is None else effort)
-        result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
+        result = laid_out(found.surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
     elif texels is not None:
-        result = at_texel_density(surface, result, texels)
+        result = at_texel_density(found.surface, result, texels)
     return with_tiny_findings(result)
 
 
@@ -221,169 +261,3 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
     if texels is not None and packing.udim is not None:
         arguments.refuse("udim", packing.udim, "leave it out and pass that of texels, whose density says the size")
     return packing.is_tight and not any(fixed.values())
-
-
-@dataclass(frozen=True, slots=True)
-class CreaseChoices:
-    """Borders at creases among which `best_at_creases` chooses.
-
-    surface: with its own borders and those that the preset requires. possible: (b, 2) int32, further ones, of
-    components that end there if their maps gain by it; None without. preset: "paint" keeps islands few.
-    """
-
-    surface: Surface
-    possible: IndexArray | None = None
-    preset: Preset = "paint"
-
-
-def crease_choices(
-    surface: Surface,
-    given: GivenCones,
-    preset: Preset,
-    options: Options,
-    sharp: ArrayLike | None = None,
-    progress: Progress | None = None,
-) -> CreaseChoices:
-    """The borders of `crease_borders` that a preset requires, and those with which it may become better.
-
-    "bake" requires all; "paint" those of components with curvature at more than 24 vertices, since fewer can be cones,
-    across which the texture continues. Both may gain by those of other components with half of their curvature on
-    creases, unless the number of cones is given. Seamless layouts on squares, as with "tile", may gain by those of hard
-    components where no cones or seams are marked. With straight borders or prescribed turning: none.
-    sharp, errors: as for `crease_borders`. progress: without time of its own.
-    """
-    find_borders = partial(crease_borders, surface, sharp=sharp, progress=share_of(progress, 0.0, 0.0))
-    most_corners = _MOST_CORNERS[preset]
-    if options.border != "free" or options.loop_turning or options.seams == "exact":
-        return CreaseChoices(surface)
-    if options.seamless is not None:
-        is_free = given.is_free and follows_features(surface, options)
-        further = find_borders() if is_free else ()
-        return CreaseChoices(surface, further if len(further) else None, preset)
-    if most_corners is None:
-        return CreaseChoices(surface)
-    required = find_borders(given.cones, most_corners=most_corners)
-    if given.count is not None:
-        return CreaseChoices(_ending_at(surface, required))
-    possible = find_borders(given.cones, least_share=_LEAST_SHARE_TO_TRY)
-    further = possible[~np.isin(keys_of(possible, surface), keys_of(required, surface))]
-    return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
-
-
-class Solvers:
-    """A solver for each surface: what one call computes serves the next ones."""
-
-    def __init__(self) -> None:
-        self._known: list[Solver] = []
-
-    def of(self, surface: Surface) -> Solver:
-        for solver in self._known:
-            if solver.surface is surface:
-                return solver
-        self._known.append(Solver(surface, self._known[-1] if self._known else None))
-        return self._known[-1]
-
-
-def best_at_creases(
-    choices: CreaseChoices,
-    options: Options,
-    objective: Objective,
-    make: MakeMap,
-    progress: Progress | None = None,
-) -> Mapped:
-    """The surface with the best borders among the possible ones, its cones and its map.
-
-    Other borders are tried on components that may gain by them; and all of them where no map is found without.
-    objective: by which maps that are not seamless are compared. make: the cones and the map of a surface, as of
-    `best_map`. progress, errors: of `make`.
-    """
-    surface, is_possible = choices.surface, choices.possible is not None
-    trying = share_of(progress, 0.0, _TRYING if is_possible else 1.0)
-    try:
-        best = surface, *make(surface, trying)
-    except SolverError as error:
-        if error.code != "SOLVER_FAILED" or choices.possible is None:
-            raise
-        # Ending at creases it takes fewer cones, or none.
-        opened = _ending_at(surface, choices.possible)
-        return opened, *make(opened, share_of(progress, _TRYING, 1.0))
-    if is_possible:
-        components = Components.of(surface)
-        possible = _PossibleBorders(choices.possible, components.of_edges(choices.possible))
-        rest = share_of(progress, _TRYING, 1.0)
-        if options.seamless is not None:
-            best = _gaining(AlongLattice(components, choices.possible), possible, best, make, rest)
-        else:
-            gain = LowerCost(components, choices.possible, objective)
-            with objective.bounded(gain.cost(best[2], share_of(rest, 0.0, 0.0))):
-                best = _gaining(gain, possible, best, make, rest)
-    tell(progress, 1.0)  # maps that were not needed leave their time
-    return best
-
-
-def best_for_strokes(
-    surface: Surface,
-    options: Options,
-    mapped: Callable[[Options, Progress | None], Mapped],
-    progress: Progress | None = None,
-) -> Mapped:
-    """The map with angles of least distortion, or one that follows the surface's strokes where it gains by that.
-
-    mapped: the map with some options. progress, errors: of `mapped`.
-    """
-    if not (options.follow_strokes and has_strokes(surface)):
-        return mapped(options, progress)
-    usual = mapped(replace(options, follow_strokes=False), share_of(progress, 0.0, _TRYING))
-    if direction_error(usual[2]) > LEAST_DIRECTION_ERROR:
-        toward = or_none(partial(mapped, options, share_of(progress, _TRYING, 1.0)))
-        if toward is not None and follows_strokes_better(toward[2], usual[2]):
-            return toward
-    tell(progress, 1.0)
-    return usual
-
-
-@dataclass(frozen=True, slots=True)
-class _PossibleBorders:
-    """Borders at which components may end: edges, (b, 2), and the component of each, (b,)."""
-
-    edges: IndexArray
-    component: NDArray[np.intp]
-
-    def not_in(self, surface: Surface) -> NDArray[np.intp]:
-        """The components that do not end at all of theirs yet."""
-        is_new = ~np.isin(keys_of(self.edges, surface), keys_of(surface.borders, surface))
-        return np.unique(self.component[is_new])
-
-    def of(self, components: NDArray[np.intp]) -> IndexArray:
-        return self.edges[np.isin(self.component, components)]
-
-
-def _gaining(
-    gain: BorderGain,
-    possible: _PossibleBorders,
-    usual: Mapped,
-    make: MakeMap,
-    progress: Progress | None,
-) -> Mapped:
-    """The usual map, or a better one, in which components that gain by their borders end there."""
-    # Comparing, and the map of those that gain, where others do not, have no time of their own.
-    begin, end = (share_of(progress, done, done) for done in (0.0, 1.0))
-    surface = usual[0]
-    chosen = possible.not_in(surface)
-    chosen = chosen[gain.may_gain(usual[2], chosen, begin)]
-    for stage in (progress, end):
-        if not len(chosen):
-            break
-        opened = _ending_at(surface, possible.of(chosen))
-        found = or_none(partial(make, opened, stage))
-        if found is None:
-            break
-        gains = gain.gains(found[1], usual[2], chosen)
-        if gains.all():
-            return (opened, *found) if gain.may_replace(found[1], usual[2], end) else usual
-        chosen = chosen[gains]
-    return usual
-
-
-def _ending_at(surface: Surface, borders: IndexArray) -> Surface:
-    return replace(surface, borders=np.concatenate([surface.borders, borders]))

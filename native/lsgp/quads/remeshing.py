@@ -21,15 +21,14 @@ from ..base.short_repr import ShortRepr
 from ..errors import Elements, Finding, InputError, LsgpError, SolverError
 from ..ledger import build_ledger, surface_of_triangles
 from ..options import Options, Seamless
-from ..presets.completed_cones import CompletedCones, GivenCones, complete_cones, or_none
-from ..presets.cone_choices import feature_cones, follows_features
-from ..presets.map_comparison import feature_share, releases_many_features, runs_along_features
 from ..results import Result
 from ..stitching import is_collapsed
 from ..surface import Surface, surface_arrays
 from ..triangles import triangle_areas, uv_area
+from .completed_cones import GivenCones, complete_cones, feature_cones, held_open, lay_out, or_none
 from .density import at_density, even_density, require_density
 from .divided_triangles import DividedSurface, divide_long_edges
+from .followed_features import feature_share, releases_many_features, runs_along_features
 from .polishing import polished
 from .quad_mesh import QuadMesh, extract_quads, scale_at
 from .quad_rows import QuadLines
@@ -216,7 +215,7 @@ def _remeshed(surface: Surface, asked: _Asked, progress: Progress | None) -> Qua
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
     solver, along, finer = Solver(surface), None, None
-    if given.is_free and follows_features(surface, chosen):
+    if given.is_free:
         along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))
     completed = _wide_cones(solver, given, chosen, share_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
@@ -272,7 +271,7 @@ def _area(surface: Surface) -> float:
         return float(triangle_areas(surface).sum())
 
 
-def _wide_cones(solver: Solver, given: GivenCones, options: Options, progress: Progress | None) -> CompletedCones:
+def _wide_cones(solver: Solver, given: GivenCones, options: Options, progress: Progress | None) -> _lsgp.CompletedCones:
     """Those of `complete_cones`, but where it places one of 90 degrees that is held at 180, and others are placed
     besides."""
     completed = complete_cones(solver, given, options, share_of(progress, 0.0, 0.5))
@@ -283,9 +282,8 @@ def _wide_cones(solver: Solver, given: GivenCones, options: Options, progress: P
         if not len(narrow):
             break
         held = np.union1d(held, narrow).astype(np.int32)
-        fixed = GivenCones(np.concatenate([given.cones, held]), [*given.angles, *[math.pi] * len(held)], given.count)
         begin, done = done, (1 + done) / 2
-        again = complete_cones(solver, fixed, options, share_of(progress, begin, done))
+        again = complete_cones(solver, held_open(given, held), options, share_of(progress, begin, done))
         if again.placement is None:
             break  # there is no other place: what the narrow cones are refused for is said of them
         completed = again
@@ -299,7 +297,7 @@ class _Layouts:
         the first grid's cells.
     """
 
-    def __init__(self, solver: Solver, completed: CompletedCones, options: Options) -> None:
+    def __init__(self, solver: Solver, completed: _lsgp.CompletedCones, options: Options) -> None:
         self._solver, self._completed, self._options = solver, completed, options
 
     def nearest(self, target: int | None, progress: Progress | None, first: Result | None = None) -> Result:
@@ -380,16 +378,12 @@ class _Layouts:
 
     def _lay_out(self, side: float | None, progress: Progress | None) -> Result:
         options = replace(self._options, seamless=replace(self._options.seamless, tile_size=side))
-        layout = self._solver.parameterize(self._completed.cones, self._completed.angles, options, progress=progress)
-        for finding in layout.warnings:
-            if finding.code == "COMPONENT_SKIPPED":
-                raise SolverError(finding.code, finding.message, finding.elements)
-        return self._completed.told(layout, options)
+        return lay_out(self._solver, self._completed, options, progress)
 
 
 def _along_features(
     asked: tuple[Solver, int | None, Options],
-    cones: tuple[CompletedCones, CompletedCones],
+    cones: tuple[_lsgp.CompletedCones, _lsgp.CompletedCones],
     progress: Progress | None,
 ) -> tuple[_Layouts, Result]:
     """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
@@ -412,7 +406,7 @@ def _along_features(
 
 
 def _whole_or_between(
-    solver: Solver, target: int | None, cones: CompletedCones, options: Options, progress: Progress | None
+    solver: Solver, target: int | None, cones: _lsgp.CompletedCones, options: Options, progress: Progress | None
 ) -> tuple[_Layouts, Result]:
     """Layouts through these cones, and the nearest to the target. On a coarse grid few features find a place on whole
     cells; quads nearly follow those that lie between."""

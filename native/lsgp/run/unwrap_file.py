@@ -26,20 +26,7 @@ from ..io.whole_files import content_digest, write_output
 from ..layouts.packing import Pack, laid_out
 from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..options import Options
-from ..presets.auto_unwrap import (
-    PACKING,
-    CreaseChoices,
-    Mapped,
-    Solvers,
-    best_at_creases,
-    best_for_strokes,
-    crease_choices,
-    objective_of,
-)
-from ..presets.completed_cones import CompletedCones, GivenCones
-from ..presets.cone_choices import best_map
-from ..presets.divisions import best_division
-from ..presets.marked_seams import along_seams
+from ..presets.auto_unwrap import PACKING, choose_map
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
@@ -250,29 +237,17 @@ def _map(
         result = parameterize(surface, *given, options, progress=progress)
         run.add_seconds(result.stage_seconds)
         return file, result
-    cones = GivenCones.of(*given, cone_count(args))
-    seamed = None
-    if args.preset is not None or options.seams == "exact":
-        with run.stage("charts"):
-            seamed = along_seams(surface, cones, options, share_of(progress, 0.0, 0.0))
-        surface, cones, options = seamed.surface, seamed.given, seamed.options
-    choices = CreaseChoices(surface)
-    if args.preset is not None and args.creases:
-        with run.stage("creases"):
-            choices = crease_choices(surface, cones, args.preset, options, progress=share_of(progress, 0.0, 0.0))
-
-    solvers = Solvers()
-    objective = objective_of(args.preset or "paint", options, weights_of(args))
-
-    def mapped_with(options: Options, progress: Progress | None) -> Mapped:
-        def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-            return best_map(solvers.of(opened), cones, options, objective, None, share, symmetric=tries_symmetry(args))
-
-        with run.stage("choose"):
-            return best_at_creases(choices, options, objective, make, progress)
-
-    surface, completed, result = best_for_strokes(surface, options, mapped_with, progress)
-    run.surface, run.placement = surface, completed.placement
-    result = best_division(solvers.of(surface), completed, result, options, objective, progress)
-    result = replace(result, choices=objective.choices)
-    return file, result if seamed is None else seamed.told(result)
+    with run.stage("choose"):
+        found = choose_map(
+            *(surface, *given),
+            preset=args.preset or "paint",
+            options=options,
+            count=cone_count(args),
+            symmetric=tries_symmetry(args),
+            charts=args.preset is not None,
+            creases=args.preset is not None and args.creases,
+            weights=weights_of(args),
+            progress=progress,
+        )
+    run.surface, run.placement = found.surface, found.placement
+    return file, found.result

@@ -35,8 +35,7 @@ from ..options import (
     SeamMode,
     UnfoldMethod,
 )
-from ..presets.auto_unwrap import Preset, preset_effort, preset_options, preset_weights
-from ..presets.objective import Weights
+from ..presets.auto_unwrap import Preset, Weights, preset_effort, preset_options, preset_weights
 from ..stitching import at_stitched
 from ..surface import Surface
 from .direction_options import add_direction_options, require_finite_up

@@ -40,6 +40,12 @@ LedgerPart account(const Component& component, ComponentCones cones, const Optio
 
 }  // namespace
 
+bool closes(const LedgerPart& part) {
+  constexpr double rounding = 1e-6;  // of sums of angles, radians
+  const double missing = part.required - part.assigned;
+  return part.border_takes_up || (part.room[0] - rounding <= missing && missing <= part.room[1] + rounding);
+}
+
 std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones, const Options& options,
                                      LedgerOf of) try {
   const Work work =

@@ -10,7 +10,8 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Surface, auto_unwrap
-from lsgp.presets.completed_cones import TARGET, CompletedCones, GivenCones, complete_cones
+from lsgp.presets.auto_unwrap import TARGET
+from lsgp.quads.completed_cones import GivenCones, complete_cones
 from map_checks import codes, only
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -101,11 +102,12 @@ def test_what_is_said_of_a_part_names_elements_of_the_whole_surface() -> None:
     count = len(ball.triangles)
     broken = meshes.with_zero_area(ball, 7)
     whole = surface(meshes.merge([ball, broken]))
-    completed = complete_cones(lsgp.Solver(whole), GivenCones.of(ball.cones), lsgp.Options())
+    completed = complete_cones(lsgp.Solver(whole), GivenCones.of(ball.cones, None, None), lsgp.Options(), None)
+    warnings = completed.placement["warnings"]
     (alone,) = only(lsgp.place_cones(surface(broken)).warnings, "DEGENERATE_FACES").elements.indices
-    assert only(completed.placement.warnings, "DEGENERATE_FACES").elements.indices.tolist() == [count + alone]
+    assert only(warnings, "DEGENERATE_FACES").elements.indices.tolist() == [count + alone]
     # Vertices of the other part are not in the one that cones are placed on, and yet no isolated ones.
-    assert "ISOLATED_VERTICES" not in codes(completed.placement.warnings)
+    assert "ISOLATED_VERTICES" not in codes(warnings)
 
 
 def test_a_part_for_which_no_cones_are_found_does_not_refuse_the_others() -> None:
@@ -154,31 +156,6 @@ def test_what_is_no_stretch_is_refused_as_a_target_also_where_no_cone_is_placed(
         auto_unwrap(surface(ball), ball.cones, target=target)
 
 
-def test_a_target_that_only_the_conformal_map_misses_is_not_reported() -> None:
-    ball, box = surface(meshes.bumpy_sphere(2)), surface(meshes.cube(2))
-    missed = lsgp.Finding("PLACEMENT_NOT_REACHED", "The target is not reached.")
-    paint, tile = lsgp.preset_options("paint"), lsgp.preset_options("tile")
-
-    def told(
-        options: lsgp.Options, l2_stretch: float, count: int | None = None, given: lsgp.Surface = ball
-    ) -> list[str]:
-        completed = complete_cones(lsgp.Solver(given), GivenCones.of(count=count), options)
-        completed = replace(completed, placement=replace(completed.placement, warnings=[missed]))
-        result = lsgp.parameterize(given, completed.cones, completed.angles, options)
-        measured = replace(result, distortion=replace(result.distortion, l2_stretch=l2_stretch))
-        return codes(completed.told(measured, options).warnings)
-
-    assert told(paint, TARGET) == []
-    assert told(paint, TARGET + 1e-3) == ["PLACEMENT_NOT_REACHED"]
-    assert told(lsgp.Options(), TARGET) == ["PLACEMENT_NOT_REACHED"]
-    # Creases along the lattice may cost a tenth.
-    assert told(tile, TARGET) == ["PLACEMENT_NOT_REACHED"]
-    assert told(tile, 1.1 * TARGET, given=box) == []
-    assert told(tile, 1.1 * TARGET + 1e-3, given=box) == ["PLACEMENT_NOT_REACHED"]
-    # A number of cones is missed whatever the stretch is.
-    assert told(paint, TARGET, count=8) == ["PLACEMENT_NOT_REACHED"]
-
-
 @pytest.mark.parametrize("preset", ["PAINT", "", None, 1])
 def test_unknown_presets_are_refused(preset: object) -> None:
     with pytest.raises(lsgp.InputError, match="choose one of paint, tile, bake"):
@@ -204,20 +181,3 @@ def test_edges_that_may_not_be_cut_are_not_cut() -> None:
     result = auto_unwrap(surface(both, edges=edges), cube.cones)
     allowed = {tuple(edge) for edge in np.sort(edges, axis=1).tolist()}
     assert {tuple(edge) for edge in np.sort(result.cut_edges, axis=1).tolist()} <= allowed
-
-
-def test_what_placement_leaves_out_but_has_a_map_is_not_told_to_be_left_out() -> None:
-    """A disk for which no cones are found is unwrapped without any."""
-    given, options = surface(SHAPES["hill"]), lsgp.preset_options("tile")
-    placement = lsgp.place_cones(given, count=2)
-    everything = lsgp.Elements("triangles", np.arange(len(given.triangles), dtype=np.int32))
-    left_out = lsgp.Finding(
-        "COMPONENT_SKIPPED", "A component of the surface was left out (SOLVER_FAILED): There are none.", everything
-    )
-    found = CompletedCones(np.empty(0, np.int32), [], replace(placement, warnings=[left_out]))
-    result = lsgp.parameterize(given, ())
-    (told,) = found.told(result, options).warnings
-    assert (told.code, told.elements) == ("PLACEMENT_NOT_REACHED", everything)
-    assert told.message == "A component was unwrapped without placed cones: There are none."
-    unsolved = replace(result, island=np.full(len(given.triangles), -1, np.int32))
-    assert found.told(unsolved, options).warnings == [left_out]

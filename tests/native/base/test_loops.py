@@ -43,6 +43,13 @@ REVIEWED = {
             SHORT,
         ),
     ],
+    "unwrap/objective.cpp": [
+        (
+            "while (const std::optional<Estimate> next = most_promising(candidates))",
+            "candidates, each once",
+            WITHIN,
+        ),
+    ],
     "api/measure_distortion.cpp": [
         ("for (std::size_t i = 0, end = 0; i < sides.size(); i = end)", "passes a side each time", SHORT),
         ("for (end = i + 1; same_edge(i, end);)", "passes a side each time", SHORT),

@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import lsgp
 import meshes
@@ -301,30 +300,6 @@ def test_creases_become_edges_of_quads(name: str) -> None:
         covered += np.linalg.norm(side[near], axis=1).sum() / 2  # every side is in two quads
         whole += length
     assert covered == pytest.approx(whole, rel=0.05)
-
-
-def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    unwrapping = lsgp.presets.cone_choices
-    box = surface(HARD["box"])
-    solver = lsgp.Solver(box)
-    given = unwrapping.GivenCones.of()
-    usual = unwrapping.complete_cones(solver, given, TILE)
-    # Gauss-Bonnet requires more than one cone of half a turn.
-    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None)
-    monkeypatch.setattr(unwrapping, "feature_cones", lambda *_: refused)
-    tried = []
-
-    def parameterize(self: lsgp.Solver, cones: NDArray[np.int32], *others: Any) -> lsgp.Result:
-        tried.append(len(cones))
-        return whole(self, cones, *others)
-
-    whole = lsgp.Solver.parameterize
-    monkeypatch.setattr(lsgp.Solver, "parameterize", parameterize)
-    objective = lsgp.presets.auto_unwrap.objective_of("tile", TILE)
-    chosen, result = unwrapping.best_map(solver, given, TILE, objective)
-    assert tried == [1, len(usual.cones), len(usual.cones)]  # the last one with its creases along the lattice
-    assert chosen.cones.tolist() == usual.cones.tolist() and chosen.angles == usual.angles
-    np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)
 
 
 @pytest.mark.parametrize("seed", range(8))

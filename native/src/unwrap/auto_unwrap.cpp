@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lsgp/auto_unwrap.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "base/text.hpp"
+#include "lsgp/lsgp.hpp"
+#include "pipeline/validation.hpp"
+#include "unwrap/border_choice.hpp"
+#include "unwrap/division_choice.hpp"
+#include "unwrap/feature_choice.hpp"
+#include "unwrap/features_wanted.hpp"
+#include "unwrap/map_comparison.hpp"
+#include "unwrap/marked_seams.hpp"
+#include "unwrap/presets.hpp"
+#include "unwrap/progress_share.hpp"
+
+namespace lsgp {
+
+namespace {
+
+void require_valid(const Weights& weights, double target) {
+  const std::array named{std::pair("islands", weights.islands), std::pair("cuts", weights.cuts),
+                         std::pair("borders", weights.borders), std::pair("cones", weights.cones),
+                         std::pair("square", weights.square),   std::pair("symmetry", weights.symmetry)};
+  for (const auto& [name, weight] : named) {
+    if (std::isfinite(weight) && weight >= 0) continue;
+    throw Error(Code::wrong_parameter,
+                concat("weights.", name, " is ", weight, "; pass a finite number that is not negative."));
+  }
+  if (std::isfinite(target) && target > 1) return;
+  throw Error(Code::wrong_parameter, concat("target is ", target, "; pass an L2 stretch, a finite number above 1."));
+}
+
+// The map with angles of least distortion, or one that follows the surface's strokes where it gains by that.
+Made best_for_strokes(const Surface& surface, const MapOptions& options,
+                      const std::function<Made(const MapOptions&, const Progress&)>& mapped, const Progress& progress) {
+  if (!options.of_map.follow_strokes || !has_strokes(surface)) return mapped(options, progress);
+  constexpr double trying = 0.5;  // of the time, without strokes
+  MapOptions others = options;
+  others.of_map.follow_strokes = false;
+  const Made usual = mapped(others, share_of(progress, 0, trying));
+  if (direction_error(usual->result) > least_direction_error) {
+    const Made toward = attempt([&] { return mapped(options, share_of(progress, trying, 1)); });
+    if (toward && follows_strokes_better(toward->result, usual->result)) return toward;
+  }
+  tell(progress, 1);
+  return usual;
+}
+
+// Packs the islands of a map, unless its margins leave no room.
+void pack(Result& result, double margin, PackingEffort effort, const Progress& progress) try {
+  PackingOptions options;
+  options.margin = margin;
+  options.turns = turns_of(result);
+  options.effort = effort;
+  result.corner_uv = pack_islands(result.corner_uv, result.island, options, progress);
+} catch (const Error& error) {
+  if (error_kind(error.code()) != ErrorKind::input) throw;
+  tell(progress, 1);
+}
+
+}  // namespace
+
+Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
+                      const Progress& progress) {
+  const PresetRow preset = row_of(options.preset);
+  const Weights weights = options.weights.value_or(preset.weights);
+  require_valid(whole);
+  require_vertices(whole, cones);
+  require_valid(weights, options.target);
+  constexpr double measuring = 0.1;  // of the time, where seams are marked
+  const MapOptions wanted = options.map.value_or(preset_options(options.preset));
+  const GivenCones to_keep{cones, options.count, options.target, {}};
+  const bool has_charts = options.charts || wanted.of_map.seams == SeamMode::exact;
+  const AlongSeams along = has_charts ? along_seams(whole, to_keep, wanted, share_of(progress, 0, measuring))
+                                      : AlongSeams{whole, to_keep, wanted, {}};
+  const Surface& surface = along.surface;
+  const GivenCones& given = along.given;
+  const MapOptions& of_map = along.options;
+  const bool is_measured = has_charts && whole.seams.rows() > 0;
+  const Progress choosing = is_measured ? share_of(progress, measuring, 1) : progress;
+  CreaseBorders creases;
+  if (options.creases) {
+    creases = crease_borders_for(surface, given, preset, of_map, options.sharp, share_of(choosing, 0, 0));
+  }
+  const bool is_pinned = !pins.corners.empty();
+  if (is_pinned) creases.possible.resize(0, 2);
+  const bool is_packed = options.pack && !is_pinned && !of_map.of_map.seamless;
+  constexpr double mapping = 0.9;  // of the time, where islands are packed afterward
+  const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
+
+  Surface ending = surface;
+  ending.borders = joined(ending.borders, creases.required);
+  BorderedSurfaces surfaces(std::move(ending));
+  Objective objective(weights, {of_map.of_map.square_share});
+  const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
+  const auto mapped = [&](const MapOptions& chosen, const Progress& share) {
+    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& of_one) {
+      return best_map(bordered, given, chosen, symmetry, pins, objective, of_one);
+    };
+    return best_at_creases(surfaces, creases.possible, chosen, make, objective, share);
+  };
+  Made best = best_for_strokes(surface, of_map, mapped, of_maps);
+  if (!is_pinned) best = best_division(best, of_map, objective, of_maps);
+
+  Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),
+                objective.choices()};
+  tell_further_cuts(along.further, out.result);
+  if (is_packed) {
+    pack(out.result, options.margin, options.effort.value_or(preset.effort), share_of(choosing, mapping, 1));
+  }
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// At which creases components end.
+#pragma once
+
+#include <optional>
+
+#include "unwrap/made_map.hpp"
+#include "unwrap/objective.hpp"
+#include "unwrap/presets.hpp"
+#include "unwrap/symmetry_choice.hpp"
+
+namespace lsgp {
+
+struct CreaseBorders {
+  VertexPairs required;  // which components end at in any case
+  VertexPairs possible;  // at which others end if their maps gain by it
+};
+
+// Bake requires those of all hard components; Paint those of components with curvature at more than 24 vertices, since
+// fewer can be cones, across which the texture continues. Both may gain by those of other components with half of their
+// curvature on creases, unless the number of cones is given. Seamless layouts on squares, as with Tile, may gain by
+// those of hard components where no cones or seams are marked. With straight borders or prescribed turning: none.
+// progress: without time of its own.  Throws what `crease_borders` throws.
+CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const PresetRow& preset,
+                                 const MapOptions& options, const VertexPairs& sharp, const Progress& progress);
+
+// The map of the surface with the best of possible borders: they are tried on components that may gain by them, and all
+// of them where no map is found without.
+// make, options: of its maps.  Throws what `make` throws.
+Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MapOptions& options,
+                     const MakeMap& make, Objective& objective, const Progress& progress);
+
+}  // namespace lsgp

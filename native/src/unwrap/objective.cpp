@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unwrap/objective.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <tuple>
+#include <utility>
+
+#include "base/array.hpp"
+#include "lsgp/errors.hpp"
+#include "unwrap/progress_share.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// By which candidates are compared.
+struct Rank {
+  double left_out = Objective::infinity, defects = Objective::infinity, cost = Objective::infinity;
+
+  bool has_defects() const { return left_out > 0 || defects > 0; }
+  bool is_better_than(const Rank& best) const {
+    // What is less is rounding, which is to decide nothing: the first of two such candidates is taken.
+    constexpr double rounding = 0.01;
+    const auto flaws = std::tie(left_out, defects), of_best = std::tie(best.left_out, best.defects);
+    return flaws < of_best || (flaws == of_best && cost < best.cost - rounding);
+  }
+};
+
+struct Estimate {
+  double cost;
+  std::size_t place;
+};
+
+// The candidate that is expected to cost least; none where none can be made.
+std::optional<Estimate> most_promising(const std::vector<Candidate>& candidates) {
+  std::optional<Estimate> least;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const std::optional<double> expected = candidates[i].expected();
+    if (expected && (!least || *expected < least->cost)) least = {*expected, i};
+  }
+  return least;
+}
+
+}  // namespace
+
+Quality Objective::quality(MadeMap& made, const Progress& progress, double asymmetry) const {
+  Quality out = measured(made, share_, progress);
+  out.asymmetry = asymmetry;
+  return out;
+}
+
+Made Objective::choose(std::vector<Candidate> candidates, const Progress& progress) {
+  Made best;
+  Rank rank;
+  ProgressSteps steps(progress);
+  std::exception_ptr failure;
+  while (const std::optional<Estimate> next = most_promising(candidates)) {
+    if (!rank.has_defects() && next->cost - error_of_estimates >= std::min(rank.cost, bound_)) break;
+    const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
+    const Candidate candidate = std::move(*place);
+    candidates.erase(place);
+    const Progress step = steps.next();
+    Made made;
+    const auto refuse = [&](Code code) {
+      failure = std::current_exception();
+      choices_.push_back({candidate.name, next->cost, {}, {}, std::string("is refused: ") + name(code), false});
+    };
+    try {
+      made = candidate.make(step);
+    } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
+      refuse(error.code());
+      continue;
+    } catch (const std::bad_alloc&) {
+      refuse(Code::out_of_memory);
+      continue;
+    }
+    const Quality quality = candidate.quality(made, share_of(step, 1, 1));
+    const Rank own{static_cast<double>(quality.left_out), static_cast<double>(quality.defects),
+                   cost(quality, weights_)};
+    const bool is_best = own.is_better_than(rank);
+    if (is_best) {
+      best = made;
+      rank = own;
+    }
+    note(candidate.name_of_made ? candidate.name_of_made() : candidate.name, quality, next->cost, is_best);
+  }
+  for (const Candidate& candidate : candidates) {
+    const std::optional<double> expected = candidate.expected();
+    if (expected) choices_.push_back({candidate.name, *expected, {}, {}, "is expected to cost more", false});
+  }
+  if (!best) std::rethrow_exception(failure);
+  tell(progress, 1);
+  return best;
+}
+
+void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {
+  choices_.push_back({name, estimate, cost(quality, weights_), quality, in_words(quality), is_best});
+}
+
+}  // namespace lsgp

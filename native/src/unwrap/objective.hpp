@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The choice among candidates by what they cost.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "unwrap/made_map.hpp"
+#include "unwrap/quality.hpp"
+
+namespace lsgp {
+
+// How far estimates are off, in hundredths of L2 stretch: what is expected to cost more than the best one made by this
+// is not made. Half of the estimates of further islands are off by less; most of those of other cones and cuts are too
+// low, so that more than this gains nothing.
+constexpr double error_of_estimates = 0.15;
+
+// One of several maps to choose from.
+struct Candidate {
+  std::string name;  // for the trace
+  // What it will cost, told without a map, from those made so far; none where it cannot be made, or is one of them.
+  std::function<std::optional<double>()> expected;
+  std::function<Made(const Progress&)> make;  // throws Error where it cannot be made
+  std::function<Quality(const Made&, const Progress&)> quality;
+  std::function<std::string()> name_of_made;  // or empty: its name
+};
+
+// By which the maps of one surface are compared, and the trace of what was chosen from.
+class Objective {
+ public:
+  Objective(const Weights& weights, SquareShare share) : weights_(weights), share_(share) {}
+
+  const Weights& weights() const { return weights_; }
+  const std::vector<Choice>& choices() const { return choices_; }
+
+  // Of a map.  progress: of packing.  Throws CANCELLED.
+  Quality quality(MadeMap& made, const Progress& progress, double asymmetry = 0) const;
+
+  // The same in one number.
+  double cost_of(MadeMap& made, const Progress& progress) const { return cost(quality(made, progress), weights_); }
+
+  // The candidate with the fewest triangles left out, the fewest defects, and the lowest cost. The one that is expected
+  // to cost least is made first; then others as long as they may cost less than the best.
+  // Throws CANCELLED, and what the last one throws where none can be made.
+  Made choose(std::vector<Candidate> candidates, const Progress& progress);
+
+  // Adds a map to the trace.
+  void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
+
+  // During its lifetime nothing is made that is expected to cost more than another map does.
+  class Bound {
+   public:
+    Bound(Objective& objective, double cost) : objective_(objective) { objective.bound_ = cost; }
+    ~Bound() { objective_.bound_ = infinity; }
+    Bound(const Bound&) = delete;
+    Bound& operator=(const Bound&) = delete;
+
+   private:
+    Objective& objective_;
+  };
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+ private:
+  const Weights weights_;
+  const SquareShare share_;
+  std::vector<Choice> choices_;
+  double bound_ = infinity;
+};
+
+}  // namespace lsgp
