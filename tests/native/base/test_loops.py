@@ -510,7 +510,7 @@ REVIEWED = {
                 OWN,
             )
         ]
-        * 2,
+        * 3,
     ],
     "packing/outline.cpp": [
         ("while (next[v] < begin[v + 1])", "sides from a vertex, each once", OWN),
