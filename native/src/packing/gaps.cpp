@@ -90,8 +90,8 @@ bool keep_gap(const Array<Outline>& outlines, double gap) {
 bool are_apart(const Outline& one, const Outline& other, double gap) {
   bool is_near = false;
   one.for_each_segment([&](Complex a, Complex b) {
-    const auto [left, right] = std::minmax({a.real(), b.real()});
-    const auto [bottom, top] = std::minmax({a.imag(), b.imag()});
+    const double left = std::min(a.real(), b.real()), right = std::max(a.real(), b.real());
+    const double bottom = std::min(a.imag(), b.imag()), top = std::max(a.imag(), b.imag());
     other.for_each_segment([&](Complex c, Complex d) {
       const bool is_beyond = std::max(c.real(), d.real()) < left - gap || std::min(c.real(), d.real()) > right + gap ||
                              std::max(c.imag(), d.imag()) < bottom - gap || std::min(c.imag(), d.imag()) > top + gap;
