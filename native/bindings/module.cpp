@@ -726,7 +726,8 @@ lsgp::Preset to_preset(const std::string& name) {
 
 lsgp::Weights to_weights(const py::dict& values) {
   const auto weight = [&](const char* name) { return values[name].cast<double>(); };
-  return {weight("islands"), weight("cuts"), weight("borders"), weight("cones"), weight("square"), weight("symmetry")};
+  return {weight("islands"), weight("cuts"),   weight("borders"), weight("cones"),
+          weight("square"),  weight("strips"), weight("symmetry")};
 }
 
 // What a preset changes of the options of a map, its weights, and how long it looks for a layout.
@@ -746,6 +747,7 @@ py::dict preset(const std::string& name) {
   of_weights["borders"] = weights.borders;
   of_weights["cones"] = weights.cones;
   of_weights["square"] = weights.square;
+  of_weights["strips"] = weights.strips;
   of_weights["symmetry"] = weights.symmetry;
   out["options"] = of_map;
   out["is_seamless"] = options.seamless.has_value();

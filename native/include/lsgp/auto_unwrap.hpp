@@ -31,6 +31,7 @@ struct Weights {
   double borders = 0.3;   // the same at creases, across which the texture does not run on
   double cones = 0.1;     // each one, around which it turns; on a component by the square root of its share of the area
   double square = 1.2;    // as much of the texture as islands fill, left empty
+  double strips = 5.0;    // that tubes have no cones, so that they are straight strips; by area
   double symmetry = 1.0;  // that cuts run alike on both sides of a mirror plane; half of it, that cones do
 };
 
@@ -44,6 +45,7 @@ struct Quality {
   double borders = 0;     // theirs
   double cones = 0;       // their number, on several components times the square roots of their shares of the area
   double empty = 0;       // the area of the texture that is left empty, as a multiple of that which is filled
+  double bent_tubes = 0;  // the share of the area in tubes that have cones
   double asymmetry = 0;   // 0.5: only cones are alike on both sides of mirror planes; 1: nothing is; by area
   double on_lattice = 0;  // what features off the lattice and small tiles cost, in hundredths of L2 stretch
 };

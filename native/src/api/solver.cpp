@@ -20,7 +20,6 @@
 #include "pipeline/mapping.hpp"
 #include "pipeline/said_once.hpp"
 #include "pipeline/wording.hpp"
-#include "prescription/strips.hpp"
 #include "seamless/seamless.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
@@ -112,7 +111,7 @@ Result map_components(const KnownSurface& known, const MapRequest& request, cons
       kept.geometry_of(i, result.warnings);
       if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
       const MetricMesh metric{component.mesh, kept.geometry(i)};
-      if (task.may_be_strip && is_tube(metric) && may_be_straight(metric)) become_strip(work.tasks[i]);
+      if (task.may_be_strip && tube_shape(metric) == TubeShape::even) become_strip(work.tasks[i]);
       if (work.tasks[i].has_directed_borders) {
         free_stretched_borders(metric, monitor, work.tasks[i]);
       }

@@ -98,10 +98,16 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   }
   if (!result_.seamless && map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");
-    const bool is_plain = !options_.straighten || component.mesh.closed();
-    straighten_islands(
-        {component.mesh, geometry}, is_plain ? SideKinds::marked : SideKinds::with_creases,
-        {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
+    const StretchOptions stretch{options_.stretch, task.importance};
+    const auto advance = [this] { monitor_.advance(0); };
+    if (task.is_strip && !component.mesh.has_features()) {
+      straighten_islands({with_marked_sides(component.mesh, map), geometry}, SideKinds::marked, stretch, advance, map);
+      map.release_reasons.clear();
+    } else {
+      const bool is_plain = !options_.straighten || component.mesh.closed();
+      const SideKinds kinds = is_plain ? SideKinds::marked : SideKinds::with_creases;
+      straighten_islands({component.mesh, geometry}, kinds, stretch, advance, map);
+    }
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, mapped.findings, result_.warnings);

@@ -153,6 +153,7 @@ struct Tube {
   Array<Index> quads;
   std::array<Array<Index>, 2> end;
   double area = 0;
+  std::array<double, 2> girth;  // the least and the largest
 };
 
 class TubeSearch {
@@ -166,6 +167,7 @@ class TubeSearch {
 
  private:
   double area_of(const Ring& ring) const;
+  double girth(const Ring& ring, int rim) const;
   bool is_steep(const Ring& ring) const;
 
   const MetricMesh surface_;
@@ -181,14 +183,17 @@ double TubeSearch::area_of(const Ring& ring) const {
   return out;
 }
 
+double TubeSearch::girth(const Ring& ring, int rim) const {
+  double out = 0;
+  for (const Index h : ring.rim[rim]) out += surface_.geometry.length[h];
+  return out;
+}
+
 // The girth of a cone grows by 2 pi times the sine of half its angle for each unit along its side.
 bool TubeSearch::is_steep(const Ring& ring) const {
-  double girth[2] = {0, 0};
-  for (const int rim : {0, 1}) {
-    for (const Index h : ring.rim[rim]) girth[rim] += surface_.geometry.length[h];
-  }
-  const double height = 2 * area_of(ring) / (girth[0] + girth[1]);
-  return std::abs(girth[1] - girth[0]) > steepest * 2 * M_PI * height;
+  const double one = girth(ring, 0), other = girth(ring, 1);
+  const double height = 2 * area_of(ring) / (one + other);
+  return std::abs(one - other) > steepest * 2 * M_PI * height;
 }
 
 Array<Tube> TubeSearch::find() const {
@@ -216,7 +221,12 @@ Array<Tube> TubeSearch::find() const {
       tube.end[direction] = all[ring].rim[rim];
     }
     if (is_closed) continue;  // a torus
+    tube.girth = {girth(all[r], 0), girth(all[r], 0)};
     for (const Index ring : rings) {
+      for (const int rim : {0, 1}) {
+        tube.girth[0] = std::min(tube.girth[0], girth(all[ring], rim));
+        tube.girth[1] = std::max(tube.girth[1], girth(all[ring], rim));
+      }
       tube.area += area_of(all[ring]);
       tube.quads.insert(tube.quads.end(), all[ring].quads.begin(), all[ring].quads.end());
     }
@@ -256,11 +266,15 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
   return out;
 }
 
-bool is_tube(const MetricMesh& surface) {
+TubeShape tube_shape(const MetricMesh& surface) {
+  constexpr double most_even = 1.1;  // between girths: texel density is off by a twentieth at most
   const HalfedgeMesh& mesh = surface.mesh;
-  if (mesh.genus > 0 || mesh.boundary_loops.size() != 2) return false;
-  const Array<Tube> tubes = TubeSearch(surface).find();
-  return !tubes.empty() && 2 * ssize(tubes.front().quads) == mesh.triangle_count();
+  if (mesh.genus > 0 || mesh.boundary_loops.size() != 2) return TubeShape::none;
+  const TubeSearch search(surface);
+  const Array<Tube> tubes = search.find();
+  if (tubes.empty() || 2 * ssize(tubes.front().quads) != mesh.triangle_count()) return TubeShape::none;
+  const auto [least, most] = tubes.front().girth;
+  return most <= most_even * least ? TubeShape::even : TubeShape::tapering;
 }
 
 }  // namespace lsgp

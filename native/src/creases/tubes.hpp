@@ -21,7 +21,9 @@ struct ComponentTubes {
 // better than unrolled: tubes end there.
 ComponentTubes find_component_tubes(const MetricMesh& surface);
 
-// Whether a component is one tube from one boundary to the other.
-bool is_tube(const MetricMesh& surface);
+// What a component is, from one boundary to the other: a tube of about the same girth all along, as a pipe is, one that
+// tapers, as a horn does, or none.
+enum class TubeShape { none, even, tapering };
+TubeShape tube_shape(const MetricMesh& surface);
 
 }  // namespace lsgp

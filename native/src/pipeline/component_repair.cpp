@@ -173,15 +173,8 @@ std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& ma
                              std::move(*sides));
 }
 
-// All four sides of a strip are features, as they are of no other map of its surface.
 std::optional<ComponentMap> ComponentRepair::straightened_as_strip(const CutSurface& surface, const ComponentMap& map) {
-  HalfedgeMesh marked = mesh_;
-  marked.feature.resize(mesh_.halfedge_count());
-  marked.is_feature_junction.assign(mesh_.vertex_count(), 0);
-  for (Index h = 0; h < mesh_.halfedge_count(); ++h) marked.feature[h] = is_open(mesh_, map.cut_mesh, h);
-  for (const Cut& cut : map.cut_graph.cuts) {
-    marked.is_feature_junction[cut.tail] = marked.is_feature_junction[cut.head] = 1;
-  }
+  const HalfedgeMesh marked = with_marked_sides(mesh_, map);
   const CutSurface strip{{marked, geometry_}, map.cut_graph, map.cut_mesh, surface.factor, surface.frame_tree};
   std::optional<StraightSides> sides = sides_to_straighten(strip, map, SideKinds::marked);
   if (!sides) return std::nullopt;

@@ -240,4 +240,13 @@ void straighten_islands(const MetricMesh& surface, SideKinds kinds, const Stretc
   if (straight) map = std::move(*straight);
 }
 
+HalfedgeMesh with_marked_sides(const HalfedgeMesh& mesh, const ComponentMap& map) {
+  HalfedgeMesh out = mesh;
+  out.feature.resize(mesh.halfedge_count());
+  out.is_feature_junction.assign(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) out.feature[h] = is_open(mesh, map.cut_mesh, h);
+  for (const Cut& cut : map.cut_graph.cuts) out.is_feature_junction[cut.tail] = out.is_feature_junction[cut.head] = 1;
+  return out;
+}
+
 }  // namespace lsgp

@@ -38,4 +38,7 @@ std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, c
 void straighten_islands(const MetricMesh& surface, SideKinds kinds, const StretchOptions& options,
                         const StepHook& before_step, ComponentMap& map);
 
+// The mesh with all sides of the islands marked as features, as those of strips are.
+HalfedgeMesh with_marked_sides(const HalfedgeMesh& mesh, const ComponentMap& map);
+
 }  // namespace lsgp

@@ -17,15 +17,17 @@
 #include "unwrap/marked_seams.hpp"
 #include "unwrap/presets.hpp"
 #include "unwrap/progress_share.hpp"
+#include "unwrap/tube_choice.hpp"
 
 namespace lsgp {
 
 namespace {
 
 void require_valid(const Weights& weights, double target) {
-  const std::array named{std::pair("islands", weights.islands), std::pair("cuts", weights.cuts),
-                         std::pair("borders", weights.borders), std::pair("cones", weights.cones),
-                         std::pair("square", weights.square),   std::pair("symmetry", weights.symmetry)};
+  const std::array named{std::pair("islands", weights.islands),  std::pair("cuts", weights.cuts),
+                         std::pair("borders", weights.borders),  std::pair("cones", weights.cones),
+                         std::pair("square", weights.square),    std::pair("strips", weights.strips),
+                         std::pair("symmetry", weights.symmetry)};
   for (const auto& [name, weight] : named) {
     if (std::isfinite(weight) && weight >= 0) continue;
     throw Error(Code::wrong_parameter,
@@ -93,16 +95,16 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
   constexpr double mapping = 0.9;  // of the time, where islands are packed afterward
   const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
 
-  Surface ending = surface;
-  ending.borders = joined(ending.borders, creases.required);
-  BorderedSurfaces surfaces(std::move(ending));
+  Tubes tubes;
+  if (weights.strips > 0) tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
   Objective objective(weights, {of_map.of_map.square_share});
   const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
   const auto mapped = [&](const MapOptions& chosen, const Progress& share) {
-    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& of_one) {
-      return best_map(bordered, given, chosen, symmetry, pins, objective, of_one);
+    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const MapOptions& with,
+                          const Progress& of_one) {
+      return best_map(bordered, given, with, symmetry, pins, objective, of_one);
     };
-    return best_at_creases(surfaces, creases.possible, chosen, make, objective, share);
+    return best_of_tubes(surface, tubes, creases, chosen, make, objective, share);
   };
   Made best = best_for_strokes(surface, of_map, mapped, of_maps);
   if (!is_pinned) best = best_division(best, of_map, objective, of_maps);

@@ -28,6 +28,7 @@ Placement place(Solver& solver, const Cones& given, const CompletionOptions& com
   if (options.of_map.seamless) placing.lattice = options.of_map.seamless->lattice;
   placing.follow_strokes = options.of_map.follow_strokes;
   placing.seams = options.of_map.seams;
+  placing.border = options.of_map.border;
   placing.threads = options.of_map.threads;
   return solver.place_cones(given, placing, progress);
 }
@@ -35,7 +36,7 @@ Placement place(Solver& solver, const Cones& given, const CompletionOptions& com
 CompletedCones completed(const Cones& given, const CompletionOptions& completion, const MapOptions& options,
                          Placement placed) {
   // Angles of placement are for free borders, and for rules that keep them.
-  const bool keeps_angles = !options.prescription && options.of_map.border == BorderMode::free;
+  const bool keeps_angles = !options.prescription && options.of_map.border != BorderMode::straight;
   std::unordered_map<Index, double> placed_angle;
   for (std::size_t i = 0; keeps_angles && i < placed.cones.size(); ++i) {
     placed_angle[placed.cones[i]] = placed.cone_angles[i];

@@ -50,7 +50,9 @@ Made best_division(const Made& usual, const MapOptions& options, Objective& obje
     return made;
   };
   const auto measure = [&](const Made& made, const Progress& packing) { return objective.quality(*made, packing); };
-  MapOptions further = options, fewer = options;
+  MapOptions further = options;
+  further.of_map.border = usual->border;
+  MapOptions fewer = further;
   further.of_map.square_share = squares_of_more;
   fewer.of_map.compact = compact == Compactness::sparing ? Compactness::off : Compactness::sparing;
 

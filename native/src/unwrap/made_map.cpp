@@ -6,17 +6,19 @@
 
 namespace lsgp {
 
-BorderedSurface::BorderedSurface(Surface surface, const BorderedSurface* earlier)
+BorderedSurface::BorderedSurface(Surface surface, std::shared_ptr<const PerTriangle<char>> in_tubes,
+                                 const BorderedSurface* earlier)
     : solver(earlier == nullptr ? Solver(std::move(surface)) : Solver(std::move(surface), earlier->solver)),
-      parts(std::cref(solver.surface())) {}
+      parts(std::cref(solver.surface())),
+      in_tubes(std::move(in_tubes)) {}
 
-BorderedSurfaces::BorderedSurfaces(Surface surface)
-    : all_{std::make_shared<BorderedSurface>(std::move(surface), nullptr)} {}
+BorderedSurfaces::BorderedSurfaces(Surface surface, std::shared_ptr<const PerTriangle<char>> in_tubes)
+    : all_{std::make_shared<BorderedSurface>(std::move(surface), std::move(in_tubes), nullptr)} {}
 
 std::shared_ptr<BorderedSurface> BorderedSurfaces::ending_at(const VertexPairs& borders) {
   Surface opened = first()->surface();
   opened.borders = joined(opened.borders, borders);
-  all_.push_back(std::make_shared<BorderedSurface>(std::move(opened), all_.back().get()));
+  all_.push_back(std::make_shared<BorderedSurface>(std::move(opened), first()->in_tubes, all_.back().get()));
   return all_.back();
 }
 
@@ -33,7 +35,7 @@ MapThrough maps_of(std::shared_ptr<BorderedSurface> surface, const Pins& pins) {
     Options of_map = options.through(cones.cones);
     of_map.mirrored_cuts = of_map.mirrored_cuts || cones.is_symmetric;
     Result result = surface->solver.parameterize(cones.cones, of_map, pins, progress);
-    return std::make_shared<MadeMap>(MadeMap{surface, cones, std::move(result), {}});
+    return std::make_shared<MadeMap>(MadeMap{surface, cones, std::move(result), of_map.border, {}});
   };
 }
 

@@ -17,9 +17,10 @@ namespace lsgp {
 struct BorderedSurface {
   Solver solver;
   SurfaceParts parts;
+  std::shared_ptr<const PerTriangle<char>> in_tubes;  // which triangles are, or null
 
   // earlier: of the same surface with other borders, or null.  Throws what `parameterize` throws for invalid surfaces.
-  BorderedSurface(Surface surface, const BorderedSurface* earlier);
+  BorderedSurface(Surface surface, std::shared_ptr<const PerTriangle<char>> in_tubes, const BorderedSurface* earlier);
   BorderedSurface(const BorderedSurface&) = delete;
   BorderedSurface& operator=(const BorderedSurface&) = delete;
 
@@ -29,7 +30,7 @@ struct BorderedSurface {
 // The same surface with one set of borders after another; what is found for one serves the later ones.
 class BorderedSurfaces {
  public:
-  explicit BorderedSurfaces(Surface surface);
+  explicit BorderedSurfaces(Surface surface, std::shared_ptr<const PerTriangle<char>> in_tubes = {});
 
   const std::shared_ptr<BorderedSurface>& first() const { return all_.front(); }
   // The first one with further borders.
@@ -43,7 +44,8 @@ struct MadeMap {
   std::shared_ptr<BorderedSurface> surface;
   CompletedCones cones;
   Result result;
-  std::optional<Quality> quality;  // once it is measured, without its asymmetry
+  BorderMode border = BorderMode::free;  // that it was made with
+  std::optional<Quality> quality;        // once it is measured, without its asymmetry
 };
 
 // Shared by choices that follow each other; only `quality` and the findings of the result change.

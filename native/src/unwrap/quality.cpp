@@ -60,6 +60,28 @@ double cones_of(const SurfaceParts& parts, const Result& result) {
   return sum;
 }
 
+// The share of the area that is in tubes of components with cones at these.
+double bent_tubes(const BorderedSurface& surface, const Result& result) {
+  const SurfaceParts& parts = surface.parts;
+  if (!surface.in_tubes || !(parts.area() > 0)) return 0;
+  const PerTriangle<char>& in_tubes = *surface.in_tubes;
+  const Index count = static_cast<Index>(in_tubes.size());
+  PerVertex<char> is_cone(parts.surface().positions.rows(), 0);
+  for (const Index v : result.cones) is_cone[v] = 1;
+  PerComponent<char> is_bent(parts.count(), 0);
+  for (Index f = 0; f < count; ++f) {
+    const auto corners = parts.surface().triangles.row(f);
+    const bool has_cone = is_cone[corners[0]] || is_cone[corners[1]] || is_cone[corners[2]];
+    if (in_tubes[f] && has_cone && parts.of_triangle()[f] != none) is_bent[parts.of_triangle()[f]] = 1;
+  }
+  double area = 0;
+  for (Index f = 0; f < count; ++f) {
+    const Index part = parts.of_triangle()[f];
+    if (in_tubes[f] && part != none && is_bent[part]) area += parts.triangle_areas()[f];
+  }
+  return area / parts.area();
+}
+
 Quality measure(const MadeMap& made, SquareShare share, const Progress& progress) {
   constexpr double least_filled = 1e-3;
   const SurfaceParts& parts = made.surface->parts;
@@ -77,6 +99,7 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   out.cones = cones_of(parts, result);
   out.empty = 1 / std::max(is_packed ? filled_when_packed(result, progress) : filled_boxes(result), least_filled) - 1;
   out.on_lattice = cost_on_lattice(result);
+  out.bent_tubes = bent_tubes(*made.surface, result);
   return out;
 }
 
@@ -87,7 +110,7 @@ double cost(const Quality& quality, const Weights& weights) {
       quality.islands <= few_islands ? quality.islands : few_islands * (1 + std::log(quality.islands / few_islands));
   return quality.stretch + weights.islands * islands + weights.cuts * quality.cuts + weights.borders * quality.borders +
          weights.cones * quality.cones + weights.square * quality.empty + weights.symmetry * quality.asymmetry +
-         quality.on_lattice;
+         weights.strips * quality.bent_tubes + quality.on_lattice;
 }
 
 const Quality& measured(MadeMap& made, SquareShare share, const Progress& progress) {
@@ -121,6 +144,7 @@ std::string in_words(const Quality& quality) {
                             significant(quality.cones, 3), " cones, cuts ", decimals(quality.cuts, 2), ", ",
                             decimals(100 / (1 + quality.empty), 0), " % filled");
   if (quality.borders != 0) said += ", borders " + decimals(quality.borders, 2);
+  if (quality.bent_tubes != 0) said += ", bent tubes " + significant(quality.bent_tubes, 2);
   if (quality.asymmetry != 0) said += ", asymmetry " + significant(quality.asymmetry, 2);
   if (quality.defects != 0) said += concat(", ", quality.defects, " defects");
   return quality.left_out == 0 ? said : concat(said, ", ", quality.left_out, " triangles left out");

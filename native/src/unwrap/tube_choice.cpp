@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unwrap/tube_choice.hpp"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "lsgp/lsgp.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Those of some edges that are on components without tubes.
+VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, const Tubes& tubes) {
+  PerComponent<char> has_tubes(parts.count(), 0);
+  for (const Index f : tubes.triangles) {
+    if (parts.of_triangle()[f] != none) has_tubes[parts.of_triangle()[f]] = 1;
+  }
+  return filtered(edges, [&](Eigen::Index e) {
+    const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
+    return f == none || parts.of_triangle()[f] == none || !has_tubes[parts.of_triangle()[f]];
+  });
+}
+
+// Of the area, what is in tubes.
+double share_of_tubes(const SurfaceParts& parts, const Tubes& tubes) {
+  double area = 0;
+  for (const Index f : tubes.triangles) area += parts.triangle_areas()[f];
+  return parts.area() > 0 ? area / parts.area() : 0;
+}
+
+// What a map costs at least that ends at these borders and has no stretch: an island for each piece.
+double least_cost(const BorderedSurfaces& surfaces, const Weights& weights) {
+  const SurfaceParts& parts = surfaces.first()->parts;
+  Quality least;
+  least.islands = parts.count();
+  least.borders = parts.area() > 0 ? length_of(parts.surface(), parts.surface().borders) / std::sqrt(parts.area()) : 0;
+  return cost(least, weights);
+}
+
+}  // namespace
+
+Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
+                const Progress& progress) {
+  const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
+  if (!is_plain || options.of_map.seams == SeamMode::exact || given.count || !pins.corners.empty()) return {};
+  return find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
+}
+
+Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorders& creases, const MapOptions& options,
+                   const MakeMapWith& make, Objective& objective, const Progress& progress) {
+  const auto in_tubes = std::make_shared<PerTriangle<char>>(surface.triangles.rows(), 0);
+  for (const Index f : tubes.triangles) (*in_tubes)[f] = 1;
+  const auto ending_at = [&](const VertexPairs& borders) {
+    Surface ending = surface;
+    ending.borders = joined(ending.borders, borders);
+    return BorderedSurfaces(std::move(ending), in_tubes);
+  };
+  const auto best = [&](BorderedSurfaces& surfaces, const VertexPairs& possible, const MapOptions& chosen,
+                        const Progress& share) {
+    const auto make_one = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& of_one) {
+      return make(bordered, chosen, of_one);
+    };
+    return best_at_creases(surfaces, possible, chosen, make_one, objective, share);
+  };
+  BorderedSurfaces usual = ending_at(creases.required);
+  const SurfaceParts& parts = usual.first()->parts;
+  if (tubes.triangles.empty()) return best(usual, creases.possible, options, progress);
+
+  BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, tubes), tubes.borders));
+  const VertexPairs others = beside_tubes(creases.possible, parts, tubes);
+  MapOptions strips = options;
+  strips.of_map.border = BorderMode::strips;
+  const auto quality = [&](const Made& made, const Progress& share) { return objective.quality(*made, share); };
+  const double bent = objective.weights().strips * share_of_tubes(parts, tubes);
+  std::vector<Candidate> candidates;
+  candidates.push_back({"tubes as strips",
+                        [&] { return least_cost(unrolled, objective.weights()); },
+                        [&](const Progress& share) { return best(unrolled, others, strips, share); },
+                        quality,
+                        {}});
+  candidates.push_back({"tubes as they are",
+                        [&] { return bent + least_cost(usual, objective.weights()); },
+                        [&](const Progress& share) { return best(usual, creases.possible, options, share); },
+                        quality,
+                        {}});
+  return objective.choose(std::move(candidates), progress);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether tubes become strips.
+#pragma once
+
+#include "lsgp/tubes.hpp"
+#include "unwrap/border_choice.hpp"
+#include "unwrap/made_map.hpp"
+#include "unwrap/objective.hpp"
+
+namespace lsgp {
+
+// The tubes of a surface, which may become strips. None with straight or turning borders, pins, a number of cones, or
+// seams that alone are cut.
+// progress: without time of its own.  Throws what `find_tubes` throws.
+Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
+                const Progress& progress);
+
+// The map of a surface that ends at the borders required at its creases, or at others that are possible: with its tubes
+// as they are or as strips, whichever costs less.
+// make: the map of a surface with some options, of `options` but for its border.
+using MakeMapWith = std::function<Made(const std::shared_ptr<BorderedSurface>&, const MapOptions&, const Progress&)>;
+Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorders& creases, const MapOptions& options,
+                   const MakeMapWith& make, Objective& objective, const Progress& progress);
+
+}  // namespace lsgp
