@@ -63,7 +63,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "Weights": (
         lsgp.Weights,
-        {"islands": 0.4, "cuts": 0.3, "borders": 0.3, "cones": 0.1, "square": 1.2, "symmetry": 1.0},
+        {"islands": 0.4, "cuts": 0.3, "borders": 0.3, "cones": 0.1, "square": 1.2, "strips": 5.0, "symmetry": 1.0},
     ),
     "TexelLayout": (lsgp.TexelLayout, {"density": 100.0, "texture_size": 1024, "udim": 4, "margin": 4.0}),
     "CutMover": (lsgp.CutMover, {"surface": WHOLE}),

@@ -107,7 +107,9 @@ bool LowerCost::may_replace(MadeMap& bordered, MadeMap& usual, const Progress& p
 Array<Index> AlongLattice::promising(MadeMap& usual, const Array<Index>& chosen, const Progress&) {
   const PerComponent<double> stretches = stretches_on(parts_, usual.result);
   const PerComponent<double> along = shares(usual, creases({&usual}));
-  return if_large(those_of(chosen, [&](Index i) { return stretches[i] > most_l2 || !has_direction(along[i]); }));
+  const PerComponent<Index> solved = solved_on(parts_, usual.result), all = triangles_on(parts_);
+  return if_large(those_of(
+      chosen, [&](Index i) { return solved[i] < all[i] || stretches[i] > most_l2 || !has_direction(along[i]); }));
 }
 
 Array<Index> AlongLattice::gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) {
@@ -119,7 +121,10 @@ Array<Index> AlongLattice::gaining(MadeMap& bordered, MadeMap& usual, const Arra
     return out;
   };
   const PerComponent<double> worths = worth(bordered), others = worth(usual);
-  return if_large(those_of(chosen, [&](Index i) { return worths[i] >= others[i] + worth_of_running_on; }));
+  const PerComponent<Index> solved = solved_on(parts_, bordered.result), before = solved_on(parts_, usual.result);
+  return if_large(those_of(chosen, [&](Index i) {
+    return solved[i] != before[i] ? solved[i] > before[i] : worths[i] >= others[i] + worth_of_running_on;
+  }));
 }
 
 bool AlongLattice::may_replace(MadeMap& bordered, MadeMap& usual, const Progress&) {

@@ -69,10 +69,11 @@ class AlongLattice : public BorderGain {
   // parts: of the surface without the borders.
   AlongLattice(const SurfaceParts& parts, const PossibleBorders& borders) : parts_(parts), borders_(borders) {}
 
-  // Those many of whose creases do not, or that are stretched by more than a tenth, if they are not small.
+  // Those many of whose creases do not, or that are stretched by more than a tenth or left out, if they are not small.
   Array<Index> promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) override;
 
-  // Where that is worth that the texture does not run on across their creases, if they are not small.
+  // Where more of them has a map, or as much, if that is worth that the texture does not run on across their creases;
+  // if they are not small.
   Array<Index> gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) override;
 
   // Where all have gained, and it has no further defects.

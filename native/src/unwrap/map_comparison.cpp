@@ -82,9 +82,9 @@ Index island_count(const Result& result) {
 }
 
 bool is_as_good(const Result& other, const Result& usual, double most_l2) {
-  const bool has_same = std::equal(other.island.begin(), other.island.end(), usual.island.begin(), usual.island.end(),
-                                   [](Index one, Index another) { return (one >= 0) == (another >= 0); });
-  return has_same && defect_count(other) <= defect_count(usual) && other.distortion.l2_stretch <= most_l2;
+  const bool has_all = std::equal(other.island.begin(), other.island.end(), usual.island.begin(), usual.island.end(),
+                                  [](Index one, Index another) { return one >= 0 || another < 0; });
+  return has_all && defect_count(other) <= defect_count(usual) && other.distortion.l2_stretch <= most_l2;
 }
 
 double feature_share(const Result& result) {

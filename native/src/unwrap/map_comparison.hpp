@@ -17,7 +17,7 @@ Index defect_count(const Result& result);
 // Of triangles that have a map.
 Index island_count(const Result& result);
 
-// Whether another map has the same triangles, no further defects, and up to this L2 stretch.
+// Whether another map leaves out no further triangles, has no further defects, and up to this L2 stretch.
 bool is_as_good(const Result& other, const Result& usual, double most_l2);
 
 // Of the length of marked features, or of creases if none are marked: what runs straight along u or v.

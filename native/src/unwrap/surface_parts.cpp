@@ -78,6 +78,12 @@ PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index
   return out;
 }
 
+PerComponent<Index> triangles_on(const SurfaceParts& parts) {
+  PerComponent<Index> out(parts.count(), 0);
+  for (const Index part : parts.of_triangle()) count_in(part, out);
+  return out;
+}
+
 PerComponent<Index> solved_on(const SurfaceParts& parts, const Result& result) {
   PerComponent<Index> out(parts.count(), 0);
   for (std::size_t f = 0; f < result.island.size(); ++f) {

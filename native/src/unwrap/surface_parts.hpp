@@ -51,6 +51,7 @@ PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& ed
 
 // How many of the vertices, triangles, islands and defects each component has.
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices);
+PerComponent<Index> triangles_on(const SurfaceParts& parts);
 PerComponent<Index> solved_on(const SurfaceParts& parts, const Result& result);
 PerComponent<Index> islands_on(const SurfaceParts& parts, const Result& result);
 PerComponent<Index> defects_on(const SurfaceParts& parts, const Result& result);

@@ -51,6 +51,17 @@ def sides_off_rectangle(mesh: lsgp.Surface, result: lsgp.Result, triangles: np.n
     return float(np.ptp(uv[..., 0]) * np.ptp(uv[..., 1]) / area - 1)
 
 
+def off_any_rectangle(result: lsgp.Result, triangles: np.ndarray) -> float:
+    """What the smallest box of an island has in area beyond the island itself, whichever way it lies."""
+    corners = result.corner_uv[triangles]
+    outline = corners.reshape(-1, 2)
+    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]).sum() / 2
+    angles = np.arctan2(*(np.roll(corners, -1, axis=1) - corners).reshape(-1, 2).T[::-1])
+    turned = [outline @ [[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]] for a in np.unique(angles.round(6))]
+    return float(min(np.ptp(points, axis=0).prod() for points in turned) / area - 1)
+
+
 @pytest.mark.parametrize("bend", [0.0, 0.7, 1.5])
 @pytest.mark.parametrize("caps", [False, True])
 @pytest.mark.parametrize(("around", "along"), [(6, 20), (12, 40), (17, 30)])
@@ -159,3 +170,31 @@ def test_a_seamless_strip_goes_around_in_whole_tiles(around: int) -> None:
     rim = result.corner_uv[mesh.triangles < around]
     girth = max(np.ptp(rim[:, 0]), np.ptp(rim[:, 1]))
     assert abs(girth - round(girth)) < 1e-6 and round(girth) > 0
+
+
+# --- in one press ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+@pytest.mark.parametrize(("around", "along", "bend"), [(8, 24, 0.0), (12, 40, 1.5), (16, 60, 2.5)])
+def test_a_press_unrolls_pipes(around: int, along: int, bend: float, preset: lsgp.Preset) -> None:
+    mesh = of_pipe(around, along, bend, True)
+    result = lsgp.auto_unwrap(mesh, preset=preset)
+    assert not len(result.cones) and result.distortion.l2_stretch < 1.05
+    wall = np.arange(2 * around * along)
+    for island in np.unique(result.island[wall]):
+        assert off_any_rectangle(result, np.flatnonzero(result.island == island)) < 1e-3
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_without_the_wish_a_pipe_gets_cones_where_these_stretch_it_less(preset: lsgp.Preset) -> None:
+    mesh = of_pipe(12, 40, 2.5, False)
+    weights = replace(lsgp.preset_weights(preset), strips=0.0)
+    usual, unrolled = (lsgp.auto_unwrap(mesh, preset=preset, weights=how) for how in (weights, None))
+    assert len(usual.cones) > 0 == len(unrolled.cones)
+    assert usual.distortion.l2_stretch < unrolled.distortion.l2_stretch
+
+
+def test_horns_and_balls_stay_as_they_are_cut_best() -> None:
+    assert not len(lsgp.auto_unwrap(horn(16, 40, 0.3)).cones)
+    assert len(lsgp.auto_unwrap(surface(meshes.bumpy_sphere(3))).cones) > 0
