@@ -12,12 +12,17 @@ namespace lsgp {
 
 namespace {
 
-// Those of some edges that are on components without tubes.
-VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, const Tubes& tubes) {
-  PerComponent<char> has_tubes(parts.count(), 0);
+// Whether each component has tubes.
+PerComponent<char> with_tubes(const SurfaceParts& parts, const Tubes& tubes) {
+  PerComponent<char> out(parts.count(), 0);
   for (const Index f : tubes.triangles) {
-    if (parts.of_triangle()[f] != none) has_tubes[parts.of_triangle()[f]] = 1;
+    if (parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] = 1;
   }
+  return out;
+}
+
+// Those of some edges that are on components without tubes.
+VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, const PerComponent<char>& has_tubes) {
   return filtered(edges, [&](Eigen::Index e) {
     const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
     return f == none || parts.of_triangle()[f] == none || !has_tubes[parts.of_triangle()[f]];
@@ -29,6 +34,18 @@ double share_of_tubes(const SurfaceParts& parts, const Tubes& tubes) {
   double area = 0;
   for (const Index f : tubes.triangles) area += parts.triangle_areas()[f];
   return parts.area() > 0 ? area / parts.area() : 0;
+}
+
+// What another map can save at most that differs on the components with tubes alone.
+double most_saved(const SurfaceParts& parts, const PerComponent<char>& has_tubes, MadeMap& made, Objective& objective) {
+  const Weights& weights = objective.weights();
+  const PerComponent<double> costs = costs_on(parts, made, weights).whole;
+  const Quality quality = objective.quality(made, {});
+  double out = weights.strips * quality.bent_tubes;
+  for (Index i = 0; i < parts.count(); ++i) {
+    if (has_tubes[i]) out += costs[i] + weights.square * quality.empty * parts.areas()[i] / parts.area();
+  }
+  return out;
 }
 
 // What a map costs at least that ends at these borders and has no stretch: an island for each piece.
@@ -68,24 +85,32 @@ Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorde
   BorderedSurfaces usual = ending_at(creases.required);
   const SurfaceParts& parts = usual.first()->parts;
   if (tubes.triangles.empty()) return best(usual, creases.possible, options, progress);
-
-  BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, tubes), tubes.borders));
-  const VertexPairs others = beside_tubes(creases.possible, parts, tubes);
+  const PerComponent<char> has_tubes = with_tubes(parts, tubes);
+  BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, has_tubes), tubes.borders));
+  const VertexPairs others = beside_tubes(creases.possible, parts, has_tubes);
   MapOptions strips = options;
   strips.of_map.border = BorderMode::strips;
   const auto quality = [&](const Made& made, const Progress& share) { return objective.quality(*made, share); };
   const double bent = objective.weights().strips * share_of_tubes(parts, tubes);
+  Made first;  // of the two, once it is made
+  const auto expected = [&](double least) -> std::optional<double> {
+    const bool can_gain = !first || most_saved(parts, has_tubes, *first, objective) > error_of_estimates;
+    return can_gain ? std::optional<double>(least) : std::nullopt;
+  };
+  const auto made = [&](const auto& make_one) { return first = make_one(); };
   std::vector<Candidate> candidates;
-  candidates.push_back({"tubes as strips",
-                        [&] { return least_cost(unrolled, objective.weights()); },
-                        [&](const Progress& share) { return best(unrolled, others, strips, share); },
-                        quality,
-                        {}});
-  candidates.push_back({"tubes as they are",
-                        [&] { return bent + least_cost(usual, objective.weights()); },
-                        [&](const Progress& share) { return best(usual, creases.possible, options, share); },
-                        quality,
-                        {}});
+  candidates.push_back(
+      {"tubes as strips",
+       [&] { return expected(least_cost(unrolled, objective.weights())); },
+       [&](const Progress& share) { return made([&] { return best(unrolled, others, strips, share); }); },
+       quality,
+       {}});
+  candidates.push_back(
+      {"tubes as they are",
+       [&] { return expected(bent + least_cost(usual, objective.weights())); },
+       [&](const Progress& share) { return made([&] { return best(usual, creases.possible, options, share); }); },
+       quality,
+       {}});
   return objective.choose(std::move(candidates), progress);
 }
 
