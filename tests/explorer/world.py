@@ -160,7 +160,10 @@ class World:
 
     def _mark_features(self, step: Step) -> tuple[str, list[str]]:
         if step["kind"] == "creases":
-            return self._change_surface(features=lsgp.feature_edges(self.surface, angle=0.5, borders=True))
+            found = outcome(lambda: lsgp.feature_edges(self.surface, angle=0.5, borders=True))
+            if found.error is None:
+                self._change_surface(features=found.value)
+            return found.told, []
         return self._change_surface(
             features=places.seams_of_kind(step["kind"], step["seed"], step["count"], self._triangles, self._total)
         )
