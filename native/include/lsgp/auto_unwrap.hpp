@@ -79,7 +79,8 @@ struct AutoUnwrapOptions {
   // Charts that marked seams bound get no cones, and no cuts unless they are no disks, where their maps are good
   // without; with SeamMode::exact in any case.
   bool charts = true;
-  bool creases = true;  // hard surfaces may be cut at their creases, and others where their maps cost less
+  // Hard surfaces may be cut at their creases, and others there and where tubes end if their maps cost less.
+  bool creases = true;
   VertexPairs sharp;    // (s, 2) edges that are creases whatever their angle
   // Islands are packed tightly; otherwise they stay side by side, as do those of seamless and pinned maps in any case,
   // and those for whose margins there is no room.

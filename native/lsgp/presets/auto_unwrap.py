@@ -196,7 +196,7 @@ def auto_unwrap(
         where their maps gain by it: with half of the curvature on creases, where they are stretched visibly less or
         cost less by the weights. Without cones, `count` or pins. In seamless layouts on squares, without marked cones
         and seams: those of hard components whose creases cannot run along the lattice otherwise; all other cuts stay
-        invisible.
+        invisible. And whether tubes, as of `find_tubes`, may end where they do, to become strips.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight, unless the margins leave no room. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets

@@ -96,7 +96,7 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
   const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
 
   Tubes tubes;
-  if (weights.strips > 0) tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
+  if (options.creases && weights.strips > 0) tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
   Objective objective(weights, {of_map.of_map.square_share});
   const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
   const auto mapped = [&](const MapOptions& chosen, const Progress& share) {

@@ -198,3 +198,8 @@ def test_without_the_wish_a_pipe_gets_cones_where_these_stretch_it_less(preset: 
 def test_horns_and_balls_stay_as_they_are_cut_best() -> None:
     assert not len(lsgp.auto_unwrap(horn(16, 40, 0.3)).cones)
     assert len(lsgp.auto_unwrap(surface(meshes.bumpy_sphere(3))).cones) > 0
+
+
+def test_a_map_that_may_not_end_at_creases_ends_at_no_tube() -> None:
+    mesh = of_pipe(12, 40, 1.5, True)
+    assert len(lsgp.auto_unwrap(mesh, creases=False).cones) > 0
