@@ -238,7 +238,7 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
   }
   split_along(std::move(open));
   const auto report = [&](Array<Index>& triangles, const char* sentence) {
-    if (triangles.empty() || options.seams == SeamMode::exact) return;
+    if (triangles.empty() || request.options.seams == SeamMode::exact) return;
     findings.push_back({Code::seams_opened, sentence, {ElementKind::triangles, std::move(triangles)}});
   };
   report(opened.without_cones,

@@ -44,7 +44,7 @@ Made best_for_strokes(const Surface& surface, const MapOptions& options,
   constexpr double trying = 0.5;  // of the time, without strokes
   MapOptions others = options;
   others.of_map.follow_strokes = false;
-  const Made usual = mapped(others, share_of(progress, 0, trying));
+  Made usual = mapped(others, share_of(progress, 0, trying));
   if (direction_error(usual->result) > least_direction_error) {
     const Made toward = attempt([&] { return mapped(options, share_of(progress, trying, 1)); });
     if (toward && follows_strokes_better(toward->result, usual->result)) return toward;
@@ -87,7 +87,8 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
   const Progress choosing = is_measured ? share_of(progress, measuring, 1) : progress;
   CreaseBorders creases;
   if (options.creases) {
-    creases = crease_borders_for(surface, given, preset, of_map, options.sharp, share_of(choosing, 0, 0));
+    creases =
+        crease_borders_for(surface, given, {preset.most_corners, options.sharp}, of_map, share_of(choosing, 0, 0));
   }
   const bool is_pinned = !pins.corners.empty();
   if (is_pinned) creases.possible.resize(0, 2);
@@ -100,11 +101,12 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
   Objective objective(weights, {of_map.of_map.square_share});
   const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
   const auto mapped = [&](const MapOptions& chosen, const Progress& share) {
-    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const MapOptions& with,
-                          const Progress& of_one) {
-      return best_map(bordered, given, with, symmetry, pins, objective, of_one);
+    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, TubesBecome what, const Progress& of_one) {
+      MapOptions with = chosen;
+      if (what == TubesBecome::strips) with.of_map.border = BorderMode::strips;
+      return best_map(bordered, {given, symmetry, pins}, with, objective, of_one);
     };
-    return best_of_tubes(surface, tubes, creases, chosen, make, objective, share);
+    return best_of_tubes(surface, {creases, tubes}, make, objective, share);
   };
   Made best = best_for_strokes(surface, of_map, mapped, of_maps);
   if (!is_pinned) best = best_division(best, of_map, objective, of_maps);

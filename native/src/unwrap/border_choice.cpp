@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "unwrap/border_choice.hpp"
 
+#include <functional>
 #include <memory>
 
 #include "lsgp/lsgp.hpp"
@@ -29,15 +30,18 @@ Array<Index> components_to_try(const PossibleBorders& possible, const Surface& s
   return out;
 }
 
+// The map of the surface that ends at further borders.
+using MakeEnding = std::function<Made(const VertexPairs&, const Progress&)>;
+
 // The usual map, or a better one, in which components that gain by their borders end there.
-Made best_of_gaining(BorderGain& gain, const PossibleBorders& possible, BorderedSurfaces& surfaces, const Made& usual,
-                     const MakeMap& make, const Progress& progress) {
+Made best_of_gaining(BorderGain& gain, const PossibleBorders& possible, const Made& usual, const MakeEnding& make,
+                     const Progress& progress) {
   // Comparing, and the map of those that gain, where others do not, have no time of their own.
   const Progress begin = share_of(progress, 0, 0), end = share_of(progress, 1, 1);
   Array<Index> chosen = gain.promising(*usual, components_to_try(possible, usual->surface->surface()), begin);
   for (const Progress& stage : {progress, end}) {
     if (chosen.empty()) break;
-    const Made found = attempt([&] { return make(surfaces.ending_at(possible.of(chosen)), stage); });
+    const Made found = attempt([&] { return make(possible.of(chosen), stage); });
     if (!found) break;
     Array<Index> gaining = gain.gaining(*found, *usual, chosen);
     if (gaining == chosen) return gain.may_replace(*found, *usual, end) ? found : usual;
@@ -48,22 +52,22 @@ Made best_of_gaining(BorderGain& gain, const PossibleBorders& possible, Bordered
 
 }  // namespace
 
-CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const PresetRow& preset,
-                                 const MapOptions& options, const VertexPairs& sharp, const Progress& progress) {
+CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const CreaseRules& rules,
+                                 const MapOptions& options, const Progress& progress) {
   CreaseBorders out;
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
   if (!is_plain || options.of_map.seams == SeamMode::exact) return out;
   const Progress untimed = share_of(progress, 0, 0);
   CreaseOptions creases;
-  creases.sharp = sharp;
+  creases.sharp = rules.sharp;
   if (options.of_map.seamless) {
     if (given.are_free() && follows_features(surface, options)) {
       out.possible = crease_borders(surface, {}, creases, untimed);
     }
     return out;
   }
-  if (!preset.most_corners) return out;
-  creases.most_corners = *preset.most_corners;
+  if (!rules.most_corners) return out;
+  creases.most_corners = *rules.most_corners;
   out.required = crease_borders(surface, given.cones.vertices, creases, untimed);
   if (given.count) return out;
   creases.most_corners = 0;
@@ -74,8 +78,8 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
   return out;
 }
 
-Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MapOptions& options,
-                     const MakeMap& make, Objective& objective, const Progress& progress) {
+Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MakeMap& make, Objective& objective,
+                     const Progress& progress) {
   const std::shared_ptr<BorderedSurface>& surface = surfaces.first();
   if (possible.rows() == 0) {
     Made best = make(surface, progress);
@@ -93,13 +97,16 @@ Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, co
     return make(surfaces.ending_at(possible), rest);
   }
   const PossibleBorders borders(surface->parts, possible);
-  if (options.of_map.seamless) {
+  const auto make_ending = [&](const VertexPairs& edges, const Progress& share) {
+    return make(surfaces.ending_at(edges), share);
+  };
+  if (best->result.seamless) {
     AlongLattice gain(surface->parts, borders);
-    best = best_of_gaining(gain, borders, surfaces, best, make, rest);
+    best = best_of_gaining(gain, borders, best, make_ending, rest);
   } else {
     const Objective::Bound bound(objective, objective.cost_of(*best, share_of(rest, 0, 0)));
     LowerCost gain(surface->parts, borders, objective);
-    best = best_of_gaining(gain, borders, surfaces, best, make, rest);
+    best = best_of_gaining(gain, borders, best, make_ending, rest);
   }
   tell(progress, 1);  // maps that were not needed leave their time
   return best;

@@ -21,13 +21,17 @@ struct CreaseBorders {
 // curvature on creases, unless the number of cones is given. Seamless layouts on squares, as with Tile, may gain by
 // those of hard components where no cones or seams are marked. With straight borders or prescribed turning: none.
 // progress: without time of its own.  Throws what `crease_borders` throws.
-CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const PresetRow& preset,
-                                 const MapOptions& options, const VertexPairs& sharp, const Progress& progress);
+struct CreaseRules {
+  std::optional<Index> most_corners;  // of the preset
+  const VertexPairs& sharp;           // edges that are creases whatever their angle
+};
+CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const CreaseRules& rules,
+                                 const MapOptions& options, const Progress& progress);
 
 // The map of the surface with the best of possible borders: they are tried on components that may gain by them, and all
 // of them where no map is found without.
-// make, options: of its maps.  Throws what `make` throws.
-Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MapOptions& options,
-                     const MakeMap& make, Objective& objective, const Progress& progress);
+// make: its maps, all of them seamless or none.  Throws what `make` throws.
+Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MakeMap& make, Objective& objective,
+                     const Progress& progress);
 
 }  // namespace lsgp

@@ -19,8 +19,15 @@ namespace lsgp {
 
 namespace {
 
-Placement place(Solver& solver, const Cones& given, const CompletionOptions& completion, const MapOptions& options,
-                const Progress& progress) {
+// What cones are completed by.
+struct CompletionRules {
+  const CompletionOptions& completion;
+  const MapOptions& options;
+};
+
+Placement place(Solver& solver, const Cones& given, const CompletionRules& rules, const Progress& progress) {
+  const CompletionOptions& completion = rules.completion;
+  const MapOptions& options = rules.options;
   PlacementOptions placing;
   placing.count = completion.count;
   placing.target = completion.target;
@@ -75,9 +82,9 @@ std::vector<Finding> renumbered(std::vector<Finding> findings, const std::vector
 
 // Cones on some triangles alone.
 Placement place_on(const std::vector<Index>& triangles, const Surface& surface, const Cones& given,
-                   const CompletionOptions& completion, const MapOptions& options, const Progress& progress) {
+                   const CompletionRules& rules, const Progress& progress) {
   Solver solver(part_of(surface, triangles));
-  Placement placed = place(solver, given, completion, options, progress);
+  Placement placed = place(solver, given, rules, progress);
   placed.warnings = renumbered(std::move(placed.warnings), triangles);
   return placed;
 }
@@ -87,7 +94,7 @@ CompletedCones placed_freely(Solver& solver, const CompletionOptions& completion
                              const Progress& progress) {
   const std::vector<char>& without = completion.without;
   if (std::count(without.begin(), without.end(), 0) == ssize(without)) {
-    return completed({}, completion, options, place(solver, {}, completion, options, progress));
+    return completed({}, completion, options, place(solver, {}, {completion, options}, progress));
   }
   std::vector<Index> triangles;
   for (std::size_t f = 0; f < without.size(); ++f) {
@@ -98,13 +105,13 @@ CompletedCones placed_freely(Solver& solver, const CompletionOptions& completion
     none_needed.target = completion.target;
     return none_needed;
   }
-  return completed({}, completion, options, place_on(triangles, solver.surface(), {}, completion, options, progress));
+  return completed({}, completion, options, place_on(triangles, solver.surface(), {}, {completion, options}, progress));
 }
 
 // Cones on some components alone; none where the library finds none.
 std::optional<Placement> try_to_place_on(const std::vector<LedgerPart>& components, const Surface& surface,
-                                         const Cones& given, const CompletionOptions& completion,
-                                         const MapOptions& options, const Progress& progress) try {
+                                         const Cones& given, const CompletionRules& rules,
+                                         const Progress& progress) try {
   std::vector<Index> triangles, present;
   for (const LedgerPart& component : components) {
     triangles.insert(triangles.end(), component.triangles.begin(), component.triangles.end());
@@ -117,9 +124,9 @@ std::optional<Placement> try_to_place_on(const std::vector<LedgerPart>& componen
     own.vertices.push_back(element(given.vertices, i));
     own.angles.push_back(element(given.angles, i));
   }
-  CompletionOptions usual = completion;
+  CompletionOptions usual = rules.completion;
   usual.symmetric = false;
-  return place_on(triangles, surface, own, usual, options, progress);
+  return place_on(triangles, surface, own, {usual, rules.options}, progress);
 } catch (const Error& error) {
   if (error.code() == Code::cancelled) throw;
   return {};
@@ -167,7 +174,8 @@ CompletedCones complete_cones(Solver& solver, const Cones& given, const Completi
   for (const bool with_cones : {true, false}) {
     if (!with_cones) remove_if([](const LedgerPart& component) { return !component.cones.empty(); });
     if (lacking.empty()) break;
-    std::optional<Placement> placed = try_to_place_on(lacking, solver.surface(), given, completion, options, progress);
+    std::optional<Placement> placed =
+        try_to_place_on(lacking, solver.surface(), given, {completion, options}, progress);
     if (placed) return completed(given, completion, options, std::move(*placed));
   }
   CompletedCones out;

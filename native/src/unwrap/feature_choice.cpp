@@ -102,7 +102,7 @@ Made FeatureMaps::best_along(const Made& along, const Made& usual, UsualFeatures
 
 Made FeatureMaps::straighter(const CompletedCones& for_features, const Made& usual, const Progress& progress) const {
   if (!releases_features(usual->result)) return usual;
-  const Made along = attempt([&] { return through(for_features, progress); });
+  Made along = attempt([&] { return through(for_features, progress); });
   if (!along || !may_replace_straighter(along->result, usual->result)) return usual;
   tell_findings(*along, options_.of_map);
   return along;
@@ -115,7 +115,7 @@ Made FeatureMaps::without_creases(const Made& along, const Progress& progress) c
   }
   const double share = feature_share(result);
   const double least = worth_along_features(result) + (has_direction(share) ? worth_of_direction : 0);
-  const Made plain = attempt([&] { return maps_(along->cones, unstraightened(), progress); });
+  Made plain = attempt([&] { return maps_(along->cones, unstraightened(), progress); });
   if (!plain || worth_along_features(plain->result) <= least) return along;
   const std::string message =
       concat("No creases run along the lattice: only ", decimals(100 * share, 0),
@@ -127,19 +127,19 @@ Made FeatureMaps::without_creases(const Made& along, const Progress& progress) c
   return plain;
 }
 
-Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenCones& given, const MapOptions& options,
-              Symmetry symmetry, const Pins& pins, Objective& objective, const Progress& progress) {
+Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces& given, const MapOptions& options,
+              Objective& objective, const Progress& progress) {
   constexpr double placing_for_features = 0.1;  // of the time
   std::optional<CompletedCones> for_features;
   Progress choosing = progress;
-  if (given.are_free() && aligns_features(surface->surface(), options)) {
-    for_features =
-        complete_feature_cones(surface->solver, options, given.target, share_of(progress, 0, placing_for_features));
+  if (given.cones.are_free() && aligns_features(surface->surface(), options)) {
+    for_features = complete_feature_cones(surface->solver, options, given.cones.target,
+                                          share_of(progress, 0, placing_for_features));
     choosing = share_of(progress, placing_for_features, 1);
   }
-  const MapThrough map = maps_of(surface, pins);
+  const MapThrough map = maps_of(surface, given.pins);
   const FeatureMaps maps(surface->parts, map, options);
-  SymmetryChoice cones(*surface, map, given, symmetry, objective);
+  SymmetryChoice cones(*surface, map, given.cones, given.symmetry, objective);
   const Progress untimed = share_of(choosing, 1, 1);
   const bool is_seamless = options.of_map.seamless.has_value();
   Made best = is_seamless && for_features ? maps.best_on_lattice(*for_features, cones, choosing)

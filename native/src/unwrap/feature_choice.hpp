@@ -11,8 +11,13 @@ namespace lsgp {
 // features can run along u and v, or along the lattice of seamless layouts; of several components, only those have
 // cones for features that gain by them. Its findings are those to be told.
 // Throws what `parameterize` and `complete_cones` throw.
-Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenCones& given, const MapOptions& options,
-              Symmetry symmetry, const Pins& pins, Objective& objective, const Progress& progress);
+struct GivenPlaces {
+  const GivenCones& cones;
+  Symmetry symmetry;
+  const Pins& pins;
+};
+Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces& given, const MapOptions& options,
+              Objective& objective, const Progress& progress);
 
 // Choices among maps through cones for features and other ones.
 class FeatureMaps {

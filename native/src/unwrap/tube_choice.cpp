@@ -66,8 +66,10 @@ Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOption
   return find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
 }
 
-Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorders& creases, const MapOptions& options,
-                   const MakeMapWith& make, Objective& objective, const Progress& progress) {
+Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,
+                   const Progress& progress) {
+  const CreaseBorders& creases = ends.creases;
+  const Tubes& tubes = ends.tubes;
   const auto in_tubes = std::make_shared<PerTriangle<char>>(surface.triangles.rows(), 0);
   for (const Index f : tubes.triangles) (*in_tubes)[f] = 1;
   const auto ending_at = [&](const VertexPairs& borders) {
@@ -75,21 +77,19 @@ Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorde
     ending.borders = joined(ending.borders, borders);
     return BorderedSurfaces(std::move(ending), in_tubes);
   };
-  const auto best = [&](BorderedSurfaces& surfaces, const VertexPairs& possible, const MapOptions& chosen,
+  const auto best = [&](BorderedSurfaces& surfaces, const VertexPairs& possible, TubesBecome what,
                         const Progress& share) {
     const auto make_one = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& of_one) {
-      return make(bordered, chosen, of_one);
+      return make(bordered, what, of_one);
     };
-    return best_at_creases(surfaces, possible, chosen, make_one, objective, share);
+    return best_at_creases(surfaces, possible, make_one, objective, share);
   };
   BorderedSurfaces usual = ending_at(creases.required);
   const SurfaceParts& parts = usual.first()->parts;
-  if (tubes.triangles.empty()) return best(usual, creases.possible, options, progress);
+  if (tubes.triangles.empty()) return best(usual, creases.possible, TubesBecome::anything, progress);
   const PerComponent<char> has_tubes = with_tubes(parts, tubes);
   BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, has_tubes), tubes.borders));
   const VertexPairs others = beside_tubes(creases.possible, parts, has_tubes);
-  MapOptions strips = options;
-  strips.of_map.border = BorderMode::strips;
   const auto quality = [&](const Made& made, const Progress& share) { return objective.quality(*made, share); };
   const double bent = objective.weights().strips * share_of_tubes(parts, tubes);
   Made first;  // of the two, once it is made
@@ -102,15 +102,16 @@ Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorde
   candidates.push_back(
       {"tubes as strips",
        [&] { return expected(least_cost(unrolled, objective.weights())); },
-       [&](const Progress& share) { return made([&] { return best(unrolled, others, strips, share); }); },
+       [&](const Progress& share) { return made([&] { return best(unrolled, others, TubesBecome::strips, share); }); },
        quality,
        {}});
-  candidates.push_back(
-      {"tubes as they are",
-       [&] { return expected(bent + least_cost(usual, objective.weights())); },
-       [&](const Progress& share) { return made([&] { return best(usual, creases.possible, options, share); }); },
-       quality,
-       {}});
+  candidates.push_back({"tubes as they are",
+                        [&] { return expected(bent + least_cost(usual, objective.weights())); },
+                        [&](const Progress& share) {
+                          return made([&] { return best(usual, creases.possible, TubesBecome::anything, share); });
+                        },
+                        quality,
+                        {}});
   return objective.choose(std::move(candidates), progress);
 }
 

@@ -17,9 +17,14 @@ Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOption
 
 // The map of a surface that ends at the borders required at its creases, or at others that are possible: with its tubes
 // as they are or as strips, whichever costs less.
-// make: the map of a surface with some options, of `options` but for its border.
-using MakeMapWith = std::function<Made(const std::shared_ptr<BorderedSurface>&, const MapOptions&, const Progress&)>;
-Made best_of_tubes(const Surface& surface, const Tubes& tubes, const CreaseBorders& creases, const MapOptions& options,
-                   const MakeMapWith& make, Objective& objective, const Progress& progress);
+struct EndsOfSurface {
+  const CreaseBorders& creases;
+  const Tubes& tubes;
+};
+// The map of a surface whose tubes become strips or not.
+enum class TubesBecome { strips, anything };
+using MakeWithTubes = std::function<Made(const std::shared_ptr<BorderedSurface>&, TubesBecome, const Progress&)>;
+Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,
+                   const Progress& progress);
 
 }  // namespace lsgp
