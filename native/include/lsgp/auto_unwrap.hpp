@@ -81,7 +81,7 @@ struct AutoUnwrapOptions {
   bool charts = true;
   // Hard surfaces may be cut at their creases, and others there and where tubes end if their maps cost less.
   bool creases = true;
-  VertexPairs sharp;    // (s, 2) edges that are creases whatever their angle
+  VertexPairs sharp;  // (s, 2) edges that are creases whatever their angle
   // Islands are packed tightly; otherwise they stay side by side, as do those of seamless and pinned maps in any case,
   // and those for whose margins there is no room.
   bool pack = true;
