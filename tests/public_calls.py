@@ -218,6 +218,7 @@ FILES = {"read_mesh_file", "write_mesh_file", "write_png", "MeshFile.surface", "
 NOT_CALLED = {
     *("Cancelled", "CurvatureError", "Elements", "Finding", "InputError", "LsgpError", "SolverError", "TopologyError"),
     *(
+        "Chart",
         "Choice",
         "ConeGains",
         "CutPaths",

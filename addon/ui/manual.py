@@ -16,6 +16,7 @@ DIRECTION = "how-to/texture-direction"
 PAGES = {
     identifiers.AUTO_UNWRAP: FIRST_UNWRAP,
     identifiers.UNWRAP: FIRST_UNWRAP,
+    identifiers.PACK: "how-to/packing",
     identifiers.REMESH_TO_QUADS: "how-to/quads",
     identifiers.MARK: CONES,
     identifiers.SELECT: CONES,

@@ -281,7 +281,7 @@ def page(rows: list[Row]) -> str:
     return f"""# Marked seams
 
 Written by `python tools/benchmark/marked_seams.py --write`. What is cut besides the seams that are marked, with
-*Auto Unwrap*, *Paint*, and *Seams ▸ Mine Only* or *Mine and Automatic Cuts*, the default
+*Auto Unwrap*, *Paint*, and *Seams ▸ Mine Only* or *Mine and Automatic*, the default
 ([what they mean](../how-to/cuts.md#marked-seams)). Ten models have seams by formula; on the others the islands of
 xatlas or of Blender's *Smart UV Project* are turned into seams. Blender's own *Unwrap* with *Minimum Stretch* goes by
 the same seams. L2 stretch is measured with each island at a scale of its own.

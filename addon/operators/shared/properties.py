@@ -9,7 +9,7 @@ from ...core.identifiers import CONE_GROUP, SEAM_COST_GROUP
 SEAMS: Choices = {
     "FOLLOW": (
         "follow",
-        "Mine and Automatic Cuts",
+        "Mine and Automatic",
         "Marked seams are cut, and other edges only where islands would be no disks, be stretched too much or overlap "
         "themselves, or where marked cones need it; across seams of parts with marked cones both sides match",
     ),

@@ -61,6 +61,7 @@ double least_cost(const BorderedSurfaces& surfaces, const Weights& weights) {
 
 Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
                 const Progress& progress) {
+  if (options.of_map.seamless) return {};
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
   if (!is_plain || options.of_map.seams == SeamMode::exact || given.count || !pins.corners.empty()) return {};
   return find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));

@@ -110,6 +110,7 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
     assert [(name, entry.clear) for name, entry, _ in stand_in.layout.drawn] == [
         ("uv.cone_auto_unwrap", None),
         ("uv.cone_unwrap", None),
+        ("uv.cone_pack", None),
         ("object.cone_remesh_to_quads", None),
         ("mesh.cone_mark", False),
         ("mesh.cone_mark", True),

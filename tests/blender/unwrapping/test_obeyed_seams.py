@@ -70,7 +70,7 @@ def test_the_meaning_of_seams_is_offered_in_words_of_artists_and_old_values_stil
     items = bpy.ops.uv.cone_auto_unwrap.get_rna_type().properties["seams"].enum_items
     assert [items[name].name for name in ("EXACT", "FOLLOW", "IGNORE")] == [
         "Mine Only",
-        "Mine and Automatic Cuts",
+        "Mine and Automatic",
         "Ignore",
     ]
     # Keymaps of earlier versions hold numbers.

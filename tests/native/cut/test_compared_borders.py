@@ -31,6 +31,10 @@ def scaled(mesh: Mesh, size: float) -> Mesh:
     return meshes.make(size * mesh.positions, mesh.triangles)
 
 
+# Of which creases alone decide where barrels end.
+NO_STRIPS = lsgp.Weights(strips=0.0)
+
+
 def compares_borders(result: lsgp.Result) -> bool:
     return any(choice.name == "boundaries at creases" for choice in result.choices)
 
@@ -56,7 +60,8 @@ def test_a_barrel_ends_at_its_rims(around: int, rings: int, height: float, prese
     }
     middles = np.flatnonzero((abs(z) == height) & (np.linalg.norm(mesh.positions[:, :2], axis=1) == 0))
     rims = {e for e in rims if not set(e) & set(middles.tolist())}
-    assert rims < pairs(result.borders) and len(result.borders) == 2 * around + rings - 1
+    # The texture runs on across the cut between them, unless it is a border, too.
+    assert rims <= pairs(result.borders) and len(result.borders) in (2 * around, 2 * around + rings - 1)
 
 
 @pytest.mark.parametrize(("around", "neck"), [(16, 0.2), (20, 0.3), (32, 0.18)])
@@ -80,7 +85,7 @@ def test_many_small_bends_make_no_flat_face(rings: int) -> None:
 
 def test_maps_are_compared_only_where_one_is_stretched_and_has_creases() -> None:
     for mesh, has_more in ((meshes.bumpy_sphere(3), False), (barrel(24, 5, 1.3), True)):
-        assert compares_borders(lsgp.auto_unwrap(surface(mesh), pack="shelves")) == has_more
+        assert compares_borders(lsgp.auto_unwrap(surface(mesh), pack="shelves", weights=NO_STRIPS)) == has_more
 
 
 @pytest.mark.parametrize(
@@ -130,10 +135,12 @@ def test_each_component_is_judged_by_itself() -> None:
     assert len(lsgp.auto_unwrap(surface(scaled(large, 0.05))).borders)
     for size in (0.05, 0.35):
         both = surface(meshes.merge([meshes.bumpy_sphere(2), large, scaled(large, size)]))
-        result = lsgp.auto_unwrap(both, pack="shelves", symmetric=False)
+        result = lsgp.auto_unwrap(both, pack="shelves", symmetric=False, weights=NO_STRIPS)
         ball = len(meshes.bumpy_sphere(2).positions)
         is_of_large = (result.borders >= ball) & (result.borders < ball + len(large.positions))
-        assert is_of_large.all() and len(result.borders) == len(lsgp.auto_unwrap(surface(large)).borders)
+        assert is_of_large.all() and len(result.borders) == len(
+            lsgp.auto_unwrap(surface(large), weights=NO_STRIPS).borders
+        )
         assert result.cones.min() < ball and result.cones.max() >= ball + len(large.positions)
 
 
