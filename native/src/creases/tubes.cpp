@@ -269,7 +269,7 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
 TubeShape tube_shape(const MetricMesh& surface) {
   constexpr double most_even = 1.1;  // between girths: texel density is off by a twentieth at most
   const HalfedgeMesh& mesh = surface.mesh;
-  if (mesh.genus > 0 || mesh.boundary_loops.size() != 2) return TubeShape::none;
+  if (!mesh.is_ring()) return TubeShape::none;
   const TubeSearch search(surface);
   const Array<Tube> tubes = search.find();
   if (tubes.empty() || 2 * ssize(tubes.front().quads) != mesh.triangle_count()) return TubeShape::none;

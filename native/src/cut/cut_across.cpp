@@ -73,12 +73,4 @@ std::optional<CutGraph> cut_across(const MetricMesh& ring) {
   return trace_cuts(mesh, PerVertex<char>(mesh.vertex_count(), 0), std::move(is_cut));
 }
 
-double cost_of(const MetricMesh& surface, const CutGraph& cut_graph) {
-  double out = 0;
-  for (const Cut& cut : cut_graph.cuts) {
-    for (const Index h : cut.halfedges) out += cut_cost(surface, h);
-  }
-  return out;
-}
-
 }  // namespace lsgp

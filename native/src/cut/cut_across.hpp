@@ -12,7 +12,4 @@ namespace lsgp {
 // of a mesh of quads do. None where there is no such path.
 std::optional<CutGraph> cut_across(const MetricMesh& ring);
 
-// Of all cuts, with the given costs.
-double cost_of(const MetricMesh& surface, const CutGraph& cut_graph);
-
 }  // namespace lsgp

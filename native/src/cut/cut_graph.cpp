@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "base/union_find.hpp"
+#include "cut/cut_cost.hpp"
 #include "cut/key_path_exchange.hpp"
 #include "cut/shortest_paths.hpp"
 
@@ -225,6 +226,14 @@ CutGraph connect_cones(const MetricMesh& surface, const Array<Index>& interior_c
 CutGraph keep_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Array<Index>& interior_cones) {
   const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, cut_graph.is_cut));
+}
+
+double cost_of(const MetricMesh& surface, const CutGraph& cut_graph) {
+  double out = 0;
+  for (const Cut& cut : cut_graph.cuts) {
+    for (const Index h : cut.halfedges) out += cut_cost(surface, h);
+  }
+  return out;
 }
 
 CutGraph trace_cuts(const HalfedgeMesh& mesh, const PerVertex<char>& is_node, PerHalfedge<char> is_cut) {

@@ -39,6 +39,9 @@ PerVertex<Index> find_cut_networks(const HalfedgeMesh& mesh);
 // The cut graph that is left where some cones inside are none any more: only those given still have to be reached.
 CutGraph keep_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Array<Index>& interior_cones);
 
+// Of all cuts, as `cut_cost` has it.
+double cost_of(const MetricMesh& surface, const CutGraph& cut_graph);
+
 // One of each cut edge, cut by cut.
 Array<Index> halfedges_of(const CutGraph& cut_graph);
 

@@ -26,14 +26,6 @@ constexpr double operations_a_search = 500;
 
 using Side = MirrorSide;
 
-double cost_of(const CutTask& task, const CutGraph& cuts) {
-  double out = 0;
-  for (const Cut& cut : cuts.cuts) {
-    for (const Index h : cut.halfedges) out += cut_cost(task, h);
-  }
-  return out;
-}
-
 class MirroredCuts {
  public:
   MirroredCuts(const CutTask& task, Borrowed<const Mirroring> mirroring);
@@ -198,7 +190,7 @@ std::optional<CutGraph> MirroredCuts::half_with_trunk(const CutGraph& free_half)
   for (const Array<Index>& contacts : possible_contacts(free_half)) {
     try {
       CutGraph half = half_through(contacts);
-      const double cost = cost_of({{half_, task_.geometry}, own_cones_, beyond_}, half);
+      const double cost = cost_of({half_, task_.geometry}, half);
       if (best && !(cost < least)) continue;
       best = std::move(half);
       least = cost;

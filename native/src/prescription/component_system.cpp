@@ -48,9 +48,7 @@ CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerL
   // Of straight cuts: a tight bend is so much longer outside than inside.
   constexpr double most_cost = 3;
   CutGraph usual = connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
-  if (!interior_cones.empty() || usual.cuts.size() != 1 || surface_.mesh.boundary_loops.size() != 2 ||
-      surface_.mesh.genus > 0)
-    return usual;
+  if (!interior_cones.empty() || usual.cuts.size() != 1 || !surface_.mesh.is_ring()) return usual;
   std::optional<CutGraph> straight = cut_across(surface_);
   return straight && cost_of(surface_, *straight) <= most_cost * cost_of(surface_, usual) ? std::move(*straight)
                                                                                           : usual;

@@ -71,7 +71,8 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
                    const Progress& progress) {
   const CreaseBorders& creases = ends.creases;
   const Tubes& tubes = ends.tubes;
-  const auto in_tubes = std::make_shared<PerTriangle<char>>(surface.triangles.rows(), 0);
+  std::shared_ptr<PerTriangle<char>> in_tubes;
+  if (!tubes.triangles.empty()) in_tubes = std::make_shared<PerTriangle<char>>(surface.triangles.rows(), 0);
   for (const Index f : tubes.triangles) (*in_tubes)[f] = 1;
   const auto ending_at = [&](const VertexPairs& borders) {
     Surface ending = surface;
