@@ -35,9 +35,11 @@ class PlacementWork {
                 const Progress& progress)
       : triangles_(request.surface.triangles.rows()), kept_(kept), findings_(findings), monitor_(progress, seconds_) {
     kept_.update([&](Work earlier) { return prepare_placement(request, findings, std::move(earlier)); });
-    copies_.assign(request.surface.positions.rows(), 0);
+    inside_.assign(request.surface.positions.rows(), 0);
     for (const Component& component : components()) {
-      for (const Index v : component.source_vertex) ++copies_[v];
+      for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+        inside_[component.source_vertex[v]] += component.mesh.loop_of_vertex[v] == none;
+      }
     }
   }
 
@@ -67,9 +69,9 @@ class PlacementWork {
                                                static_cast<double>(triangles_before) / static_cast<double>(triangles_));
       monitor_.advance(0);
       const Geometry& geometry = kept_.geometry_of(i, findings_);
-      // A vertex shared by components cannot have a different angle on each.
+      // A vertex inside several components cannot have a different angle on each.
       PerVertex<char> allowed;
-      for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
+      for (const Index v : component.source_vertex) allowed.push_back(inside_[v] <= 1);
       std::vector<Finding> found;
       visit(component, geometry, task, allowed, found);
       report_border_cones(component, task.border_cones, findings_);
@@ -88,7 +90,7 @@ class PlacementWork {
   std::vector<Finding>& findings_;
   StageSeconds seconds_;
   ProgressMonitor monitor_;
-  PerVertex<Index> copies_;  // components' vertices that are one of the caller's
+  PerVertex<Index> inside_;  // vertices inside components that are one of the caller's
 };
 
 // The given mirror plane in the components' unit.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "base/array.hpp"
@@ -84,8 +85,15 @@ std::pair<Array<Index>, Index> CutRouter::Kept::along(const std::vector<Index>& 
   Array<Index> halfedges;
   Index component = none;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    auto [h, owner] = local_halfedge(edges.halfedge(edge_between(path[i], path[i + 1]), 0));
-    if (h == none || components[owner].mesh.twin[h] == none || (component != none && owner != component)) {
+    const Index edge = edge_between(path[i], path[i + 1]);
+    // At an edge of several sheets it is the cut of the component that it has run through, or of the first one.
+    Index h = none, owner = none;
+    for (Index side = 0; side < edges.halfedge_count(edge) && h == none; ++side) {
+      const auto [at, on] = local_halfedge(edges.halfedge(edge, side));
+      const bool is_inside = at != none && components[on].mesh.twin[at] != none;
+      if (is_inside && (component == none || on == component)) std::tie(h, owner) = std::pair(at, on);
+    }
+    if (h == none) {
       throw Error(Code::cut_not_movable, "The cut runs along a boundary of the mesh, which stays where it is.",
                   {ElementKind::edges, {path[i], path[i + 1]}});
     }

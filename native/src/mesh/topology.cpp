@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "base/union_find.hpp"
 #include "mesh/edge_table.hpp"
+#include "mesh/sheets.hpp"
 
 namespace lsgp {
 
@@ -98,25 +99,26 @@ Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const Edg
   return duplicates;
 }
 
+// What the caller says of edges.
+struct EdgeMarks {
+  PerEdge<char> cuttable, seam, border, feature;
+  PerEdge<double> factor;  // empty: 1
+};
+
 struct Orientation {
   PerTriangle<Index> component;  // none for triangles left out
   PerTriangle<char> reversed;
-  PerComponent<char> orientable;
+  PerPart<char> orientable;
 };
 
-// The twin of every halfedge across which the surface continues: at edges of two triangles that are neither a border
-// nor an open seam; none at others.
-PerHalfedge<Index> join_halfedges(const EdgeTable& edges, const PerEdge<char>& border, const PerEdge<char>& seam,
-                                  const OpenSeams& open_seams, Index halfedge_count) {
-  PerHalfedge<Index> twin(halfedge_count, none);
-  for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (edges.halfedge_count(edge) != 2 || border[edge]) continue;
-    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
-    if (seam[edge] && !open_seams.empty() && (open_seams[a / 3] || open_seams[b / 3])) continue;
-    twin[a] = b;
-    twin[b] = a;
+// Whether the surface ends at an edge that is a border, or a seam of triangles with open seams.
+bool is_open(const EdgeTable& edges, Index edge, const EdgeMarks& marks, const OpenSeams& open_seams) {
+  if (marks.border[edge]) return true;
+  if (!marks.seam[edge] || open_seams.empty()) return false;
+  for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
+    if (open_seams[edges.halfedge(edge, i) / 3]) return true;
   }
-  return twin;
+  return false;
 }
 
 // Labels components by breadth-first search over joined halfedges and orients every triangle like its component's
@@ -154,6 +156,29 @@ Orientation orient(const Surface& surface, const PerTriangle<char>& skip, const 
     }
   }
   return out;
+}
+
+// The twin of every halfedge across which the surface continues, none at others: at edges of two triangles that
+// are not open, and at those of more triangles as sheets run on.
+PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks,
+                                  const OpenSeams& open_seams, const PerTriangle<char>& skip) {
+  PerHalfedge<Index> twin(3 * surface.triangles.rows(), none);
+  PerEdge<char> crowded;
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) < 2 || is_open(edges, edge, marks, open_seams)) continue;
+    if (edges.halfedge_count(edge) == 2) {
+      const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
+      twin[a] = b;
+      twin[b] = a;
+      continue;
+    }
+    if (crowded.empty()) crowded.assign(edges.count(), 0);
+    crowded[edge] = 1;
+  }
+  if (crowded.empty()) return twin;
+  const Orientation parts = orient(surface, skip, twin);
+  continue_sheets(surface, edges, crowded, {parts.component, parts.reversed, parts.orientable}, twin);
+  return twin;
 }
 
 void find_boundary_loops(HalfedgeMesh& mesh) {
@@ -224,7 +249,8 @@ void report_crowded_edges(const Surface& surface, const EdgeTable& edges, std::v
   findings.push_back(
       {Code::non_manifold_edge,
        concat(count(crowded.size() / 2, "edge is", "edges are"),
-              " shared by more than two triangles. The layout is open there; delete the surplus faces to close it."),
+              " shared by more than two triangles. The two that continue each other best stay joined, the others end "
+              "there; delete the surplus faces to avoid this note."),
        {ElementKind::edges, crowded}});
 }
 
@@ -233,8 +259,8 @@ PerVertex<char> mark_opened(const Surface& surface, const EdgeTable& edges, cons
                             const Orientation& orientation) {
   PerVertex<char> open(surface.positions.rows(), 0);
   for (Index edge = 0; edge < edges.count(); ++edge) {
-    const Index h = edges.halfedge(edge, 0);
-    if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;
+    const Index h = edges.halfedge(edge, 0), sides = edges.halfedge_count(edge);
+    if (sides < 2 || (sides == 2 && twin[h] != none)) continue;
     open[surface.triangles.data()[h]] = open[surface.triangles.data()[next(h)]] = 1;
   }
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
@@ -302,12 +328,6 @@ Array<std::pair<Index, Index>> leave_out_duplicates(const Surface& surface, PerT
                       {ElementKind::triangles, doubled}});
   return duplicates;
 }
-
-// What the caller says of edges.
-struct EdgeMarks {
-  PerEdge<char> cuttable, seam, border, feature;
-  PerEdge<double> factor;  // empty: 1
-};
 
 EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges, const Array<Index>& collapsed) {
   const EdgeSet lost = edges_of(surface, collapsed);
@@ -446,8 +466,7 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
   topology.duplicates = leave_out_duplicates(surface, skip, edges, findings);
   for (const auto& pair : find_neighbors(surface, edges, topology.collapsed)) topology.duplicates.push_back(pair);
   const EdgeMarks marks = marks_of(surface, edges, topology.collapsed);
-  const PerHalfedge<Index> twin =
-      join_halfedges(edges, marks.border, marks.seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
+  const PerHalfedge<Index> twin = join_halfedges(surface, edges, marks, open_seams, skip);
   const Orientation orientation = orient(surface, skip, twin);
   topology.components = build_components(surface, {edges, marks, twin, orientation});
   report_crowded_edges(surface, edges, findings);

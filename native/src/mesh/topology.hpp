@@ -98,9 +98,10 @@ struct Topology {
 // Which seams are boundaries: those of the marked triangles; empty: none.
 using OpenSeams = PerTriangle<char>;
 
-// Splits a surface into components joined along edges of exactly two triangles. Edges of more triangles are opened,
-// vertices whose triangles form several fans are split, triangles oriented against their component's majority are
-// reversed, duplicate triangles are left out; each is reported. Collapsed triangles are left out and listed.
+// Splits a surface into components joined along edges of two triangles and, at edges of more, along those pairs of
+// triangles that continue each other. Vertices whose triangles form several fans are split, triangles oriented against
+// their component's majority are reversed, duplicate triangles are left out; each is reported. Collapsed triangles are
+// left out and listed.
 // Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
 Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings);
 

@@ -25,11 +25,23 @@ Finding left_out(Code code, const char* why, Array<Index> triangles) {
           {ElementKind::triangles, std::move(triangles)}};
 }
 
+// The vertices inside one of the components. A cone there is none of the borders of others that end or touch there.
+PerVertex<char> mark_inside(const PerComponent<Component>& components, Eigen::Index vertex_count) {
+  PerVertex<char> out(vertex_count, 0);
+  for (const Component& component : components) {
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      if (component.mesh.loop_of_vertex[v] == none) out[component.source_vertex[v]] = 1;
+    }
+  }
+  return out;
+}
+
 // open: the components that are opened along their seams.
 PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<Component>& components,
                                      const OpenSeams& open, const Cones& cones, const Options& options) {
   PerVertex<Index> cone_at(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) cone_at[cones.vertices[i]] = static_cast<Index>(i);
+  const PerVertex<char> is_inside = mark_inside(components, surface.positions.rows());
   PerComponent<ComponentTask> tasks(components.size());
   for (std::size_t c = 0; c < components.size(); ++c) {
     const Component& component = components[c];
@@ -42,6 +54,7 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       const Index cone = cone_at[component.source_vertex[v]];
       if (cone == none) continue;
+      if (component.mesh.loop_of_vertex[v] != none && is_inside[component.source_vertex[v]]) continue;
       const bool imposed = options.prescription == PrescriptionRule::manual && element(cones.angles, cone);
       const bool corner = options.border == BorderMode::straight || imposed;
       if (component.mesh.loop_of_vertex[v] == none || corner)

@@ -179,6 +179,11 @@ REVIEWED = {
         ("while (h != none && h != corner)", AROUND_A_VERTEX, SHORT),
         ("while (h == none && mesh.twin[first] != none)", AROUND_A_VERTEX, SHORT),
     ],
+    "mesh/sheets.cpp": [
+        ("for (; parent_[root] != root; root = parent_[root])", LINKED, SHORT),
+        ("for (bool rest = turned; parent_[i] != root && parent_[i] != i;)", LINKED, SHORT),
+        ("while (true)", AROUND_A_VERTEX, SHORT),
+    ],
     "mesh/nearest_distance.cpp": [("while (!reached.empty())", NEAREST, SHORT)],
     "mesh/topology.hpp": [("while (h != none && h != outgoing[v])", AROUND_A_VERTEX, SHORT)],
     "placement/verified_placement.cpp": [
