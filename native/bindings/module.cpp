@@ -767,6 +767,7 @@ lsgp::AutoUnwrapOptions to_auto_unwrap_options(const py::dict& values) {
   options.symmetric = values["symmetric"].cast<bool>();
   options.charts = values["charts"].cast<bool>();
   options.creases = values["creases"].cast<bool>();
+  options.seconds = values["seconds"].cast<std::optional<double>>();
   options.pack = false;
   return options;
 }

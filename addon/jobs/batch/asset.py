@@ -118,6 +118,8 @@ def _require_fitting(args: argparse.Namespace) -> None:
             f"--pack {args.pack}{'' if args.texel_density is None else ' at a texel density'} is for lsgp batch; leave "
             "it out"
         )
+    if args.time_limit is not None:
+        raise native.part("io.side_files").UsageError("--time-limit is for lsgp batch; here files have a --timeout")
 
 
 def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:

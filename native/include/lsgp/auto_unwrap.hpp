@@ -87,6 +87,8 @@ struct AutoUnwrapOptions {
   bool pack = true;
   std::optional<PackingEffort> effort;  // none: that of the preset
   double margin = PackingOptions().margin;
+  // After so many the best map made until then is the result, and TIME_LIMIT says so.
+  std::optional<double> seconds;
 };
 
 struct Unwrapped {
@@ -98,7 +100,8 @@ struct Unwrapped {
 
 // cones: are kept. A component without cones gets the number that its stretch requires, which may be 0; one whose cones
 // cannot take up its curvature gets more.
-// Throws what `place_cones` and `parameterize` throw; WRONG_PARAMETER for weights and targets that are none.
+// Throws what `place_cones` and `parameterize` throw; WRONG_PARAMETER for weights, targets and seconds that are none;
+// TIME_LIMIT where no map was made in time.
 LSGP_API Unwrapped auto_unwrap(const Surface& surface, const Cones& cones = {}, const AutoUnwrapOptions& options = {},
                                const Pins& pins = {}, const Progress& progress = {});
 

@@ -56,6 +56,7 @@ enum class Code {
   grid_too_coarse,
   out_of_memory,
   solver_busy,
+  time_limit,  // also a finding
   // Cancelled
   cancelled,
   // warnings

@@ -11,6 +11,7 @@ from ..base.progress import Progress
 from ..errors import LsgpError
 from ..io.side_files import UsageError
 from ..io.whole_files import write_whole
+from ..presets.auto_unwrap import TIME_LIMIT
 from ..run import report as reports
 from ..run.exit_codes import describe
 from ..run.unwrap_file import Run, out_of_memory, unwrap_file
@@ -39,7 +40,7 @@ def unwrap_asset(task: Task, settings: Settings, progress: Progress | None = Non
 
 def refusal(error: LsgpError, run: Run) -> Record:
     """The record of an error of the library."""
-    status = FAILED if error.code == out_of_memory().code else REFUSED
+    status = FAILED if error.code in (out_of_memory().code, TIME_LIMIT) else REFUSED
     count = None if run.triangulation is None else len(run.triangulation.triangles)
     message = f"{error.message}{reports.where(error.elements, run.triangulation)}"
     return ending(status, error.code, message, triangles=count)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Literal, get_args
@@ -25,6 +26,7 @@ from ..surface import Pins, Surface, surface_arrays
 
 Preset = Literal["paint", "tile", "bake"]
 
+TIME_LIMIT = "TIME_LIMIT"
 # The stretch of the map that automatic cones are to reach, as of `place_cones`.
 TARGET = 1.05
 # Of the time of a press: choosing the map, where islands are packed afterward.
@@ -117,6 +119,7 @@ def choose_map(
     sharp: ArrayLike | None = None,
     pins: Pins | None = None,
     weights: Weights | None = None,
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> ChosenMap:
     """The map of `auto_unwrap`, which takes the same arguments and raises the same errors.
@@ -138,6 +141,10 @@ def choose_map(
         count = arguments.whole_number("count", count, 0, "pass a number of cones, or None for automatic")
     if count is not None and chosen.seams == "exact":
         arguments.refuse("count", count, 'leave it out: with the seams "exact" no cones are placed')
+    if seconds is not None:
+        remedy = "pass a positive number of seconds, or None for no limit"
+        if not arguments.number("seconds", seconds, remedy) > 0:
+            arguments.refuse("seconds", seconds, remedy)
     values = {
         "preset": preset,
         "options": option_values(chosen),
@@ -147,6 +154,7 @@ def choose_map(
         "symmetric": arguments.flag("symmetric", symmetric),
         "charts": charts,
         "creases": arguments.flag("creases", creases),
+        "seconds": None if seconds is None else float(seconds),
     }
     marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
     given = given_cones(cones, angles)
@@ -176,6 +184,7 @@ def auto_unwrap(
     effort: Effort | None = None,
     texels: TexelLayout | None = None,
     weights: Weights | None = None,
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Unwrap a surface ready for use: place missing cones and apply a preset.
@@ -205,6 +214,8 @@ def auto_unwrap(
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
     effort: how long a tight layout is looked for, as of `pack_islands`; None: "quick" with "paint", else "good".
+    seconds: after so many the best map made until then is packed quickly, and TIME_LIMIT among the warnings says so; it
+        is raised where no map was made in time. None: no limit. Results depend on the machine then.
     weights: by which maps are compared; None: `preset_weights(preset)`. `Result.choices` says what they chose from.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
@@ -229,19 +240,27 @@ def auto_unwrap(
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
     arguments.require_callable(progress)
+    begin = time.monotonic()
     found = choose_map(
         *(surface, cones, angles),
         **{"preset": preset, "options": chosen, "count": count, "target": target, "symmetric": symmetric},
         **{"creases": creases, "sharp": sharp, "pins": pins, "weights": weights},
+        seconds=seconds,
         progress=share_of(progress, 0.0, PACKING if packs else 1.0),
     )
     result = found.result
     if packs:
         packing = replace(packing, effort=preset_effort(preset) if effort is None else effort)
+        packing = in_time(packing, is_late=seconds is not None and time.monotonic() - begin > seconds)
         result = laid_out(found.surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
     elif texels is not None:
         result = at_texel_density(found.surface, result, texels)
     return with_tiny_findings(result)
+
+
+def in_time(packing: Packing, *, is_late: bool) -> Packing:
+    """How the islands of a map are packed: quickly when its time is over."""
+    return replace(packing, effort="quick") if is_late and packing.is_tight else packing
 
 
 def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: TexelLayout | None) -> bool:

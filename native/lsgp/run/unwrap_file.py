@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..api import parameterize
 from ..base.progress import Progress, share_of
 from ..base.unique_rows import unique_rows
-from ..errors import Finding, InputError, LsgpError
+from ..errors import Finding, InputError, LsgpError, SolverError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
@@ -26,7 +26,7 @@ from ..io.whole_files import content_digest, write_output
 from ..layouts.packing import Pack, laid_out
 from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..options import Options
-from ..presets.auto_unwrap import PACKING, choose_map
+from ..presets.auto_unwrap import PACKING, TIME_LIMIT, choose_map, in_time
 from ..results import Placement, Result
 from ..surface import Surface
 from ..triangles import uv_area
@@ -46,6 +46,9 @@ from .unwrap_options import (
     up_of,
     weights_of,
 )
+
+# What a file that took longer to read still has.
+LEAST_SECONDS = 0.01
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -113,6 +116,7 @@ def unwrap_file(
 
     The warnings of the result are also those of the files.
     """
+    begin = time.monotonic()
     options = replace(library_options(args), threads=args.threads)
     target = None if is_standard_stream(args.output) else args.output
     form = output_format(target, given_format)
@@ -120,8 +124,9 @@ def unwrap_file(
     packing, layout = packing_of(args), texel_layout(args)
     is_tight = packing is not None and packing.is_tight
     mapping = share_of(progress, 0.0, PACKING) if is_tight else progress
-    file, result = _map(args, options, run, mapping, given_format)
+    file, result = _map(args, options, run, mapping, given_format, begin)
     if packing is not None:
+        packing = in_time(packing, is_late=_seconds_left(args, begin) == 0)
         with run.stage("pack"):
             laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
         result = laid.result
@@ -144,6 +149,25 @@ def unwrap_file(
             target.parent.mkdir(parents=True, exist_ok=True)
         write_output(args.output, data, keep_backup=args.in_place, was=was)
     return replace(result, warnings=file.told([*findings, *result.warnings]))
+
+
+def _seconds_left(args: argparse.Namespace, begin: float) -> float | None:
+    """Of --time-limit; None without."""
+    return None if args.time_limit is None else max(args.time_limit - (time.monotonic() - begin), 0.0)
+
+
+def _limited(progress: Progress | None, seconds: float | None) -> Progress | None:
+    """Progress that raises SolverError after some time."""
+    if seconds is None:
+        return progress
+    end = time.monotonic() + seconds
+
+    def limited(done: float) -> bool | None:
+        if time.monotonic() > end:
+            raise SolverError(TIME_LIMIT, "The time limit was reached before the map was made. Allow more time.")
+        return None if progress is None else progress(done)
+
+    return limited
 
 
 def _duplicates(result: Result) -> NDArray[np.bool_]:
@@ -210,9 +234,14 @@ def uv_of(file: MeshFile, purpose: str) -> NDArray[np.float64]:
 
 
 def _map(
-    args: argparse.Namespace, options: Options, run: Run, progress: Progress | None, given_format: str | None
+    args: argparse.Namespace,
+    options: Options,
+    run: Run,
+    progress: Progress | None,
+    given_format: str | None,
+    begin: float,
 ) -> tuple[MeshFile, Result]:
-    """The mesh that was given and its map."""
+    """The mesh that was given and its map.  begin: when the time of --time-limit began."""
     cones_path = cones_file(args)
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     cones_json = None if cones_path is None else load_json(cones_path)
@@ -233,8 +262,10 @@ def _map(
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface, file.stitched))
     given = ((), None) if cones_path is None else file.cones(*cones_in(cones_json, cones_path, args.prescription))
+    left = _seconds_left(args, begin)
+    left = None if left is None else max(left, LEAST_SECONDS)
     if cones_path is not None and args.preset is None:
-        result = parameterize(surface, *given, options, progress=progress)
+        result = parameterize(surface, *given, options, progress=_limited(progress, left))
         run.add_seconds(result.stage_seconds)
         return file, result
     with run.stage("choose"):
@@ -247,6 +278,7 @@ def _map(
             charts=args.preset is not None,
             creases=args.preset is not None and args.creases,
             weights=weights_of(args),
+            seconds=left,
             progress=progress,
         )
     run.surface, run.placement = found.surface, found.placement

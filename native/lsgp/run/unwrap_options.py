@@ -180,6 +180,13 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         action="store_true",
         help="overwrite the input, which is kept as a backup until the result is complete",
     )
+    unwrap.add_argument(
+        "--time-limit",
+        metavar="S",
+        type=_seconds,
+        help="seconds after which the best map made until then is written, with the warning TIME_LIMIT; an error where "
+        "there is none yet, as before the map of given cones without --preset (default: none)",
+    )
     add_strict_option(unwrap, "layout", "tiny islands, ")
     _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
@@ -517,6 +524,16 @@ def cones_file(args: argparse.Namespace) -> Path | None:
 def cone_count(args: argparse.Namespace) -> int | None:
     """How many cones are to be placed automatically on each component; None where that is left to the library."""
     return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds < math.inf:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
+    return seconds
 
 
 def _weights(text: str) -> dict[str, float]:

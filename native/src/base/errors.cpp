@@ -37,6 +37,7 @@ const char* name(Code code) {
     case Code::grid_too_coarse: return "GRID_TOO_COARSE";
     case Code::out_of_memory: return "OUT_OF_MEMORY";
     case Code::solver_busy: return "SOLVER_BUSY";
+    case Code::time_limit: return "TIME_LIMIT";
     case Code::cancelled: return "CANCELLED";
     case Code::component_skipped: return "COMPONENT_SKIPPED";
     case Code::isolated_vertices: return "ISOLATED_VERTICES";
@@ -96,7 +97,8 @@ ErrorKind error_kind(Code code) {
     case Code::solver_failed:
     case Code::grid_too_coarse:
     case Code::out_of_memory:
-    case Code::solver_busy: return ErrorKind::solver;
+    case Code::solver_busy:
+    case Code::time_limit: return ErrorKind::solver;
     case Code::cancelled: return ErrorKind::cancelled;
     default: return ErrorKind::input;
   }

@@ -17,13 +17,14 @@
 #include "unwrap/marked_seams.hpp"
 #include "unwrap/presets.hpp"
 #include "unwrap/progress_share.hpp"
+#include "unwrap/time_limit.hpp"
 #include "unwrap/tube_choice.hpp"
 
 namespace lsgp {
 
 namespace {
 
-void require_valid(const Weights& weights, double target) {
+void require_valid(const Weights& weights, const AutoUnwrapOptions& options) {
   const std::array named{std::pair("islands", weights.islands),  std::pair("cuts", weights.cuts),
                          std::pair("borders", weights.borders),  std::pair("cones", weights.cones),
                          std::pair("square", weights.square),    std::pair("strips", weights.strips),
@@ -33,8 +34,13 @@ void require_valid(const Weights& weights, double target) {
     throw Error(Code::wrong_parameter,
                 concat("weights.", name, " is ", weight, "; pass a finite number that is not negative."));
   }
-  if (std::isfinite(target) && target > 1) return;
-  throw Error(Code::wrong_parameter, concat("target is ", target, "; pass an L2 stretch, a finite number above 1."));
+  const double target = options.target;
+  if (!std::isfinite(target) || target <= 1) {
+    throw Error(Code::wrong_parameter, concat("target is ", target, "; pass an L2 stretch, a finite number above 1."));
+  }
+  if (options.seconds && !(*options.seconds > 0)) {
+    throw Error(Code::wrong_parameter, concat("seconds is ", *options.seconds, "; pass a positive number."));
+  }
 }
 
 // The map with angles of least distortion, or one that follows the surface's strokes where it gains by that.
@@ -65,15 +71,28 @@ void pack(Result& result, double margin, PackingEffort effort, const Progress& p
   tell(progress, 1);
 }
 
-}  // namespace
+// What `make` returns, or when the time is over the best map of the objective until then.
+Made best_in_time(const TimeLimit& limit, const Objective& objective, const AutoUnwrapOptions& options,
+                  const MapOptions& of_map, const std::function<Made()>& make) try {
+  return make();
+} catch (const Error& error) {
+  const Made best = objective.best_so_far();
+  if (!limit.has_caused(error) || !best) throw;
+  tell_findings(*best, of_map.of_map);
+  const std::string message =
+      concat("The time limit of ", *options.seconds, " s was reached: this is the best map made until then.");
+  best->result.warnings.push_back({Code::time_limit, message, {}});
+  return best;
+}
 
-Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
-                      const Progress& progress) {
+Unwrapped unwrapped(const Surface& whole, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
+                    const TimeLimit& limit, const Progress& unlimited) {
+  const Progress& progress = limit.progress();
   const PresetRow preset = row_of(options.preset);
   const Weights weights = options.weights.value_or(preset.weights);
   require_valid(whole);
   require_vertices(whole, cones);
-  require_valid(weights, options.target);
+  require_valid(weights, options);
   constexpr double measuring = 0.1;  // of the time, where seams are marked
   const MapOptions wanted = options.map.value_or(preset_options(options.preset));
   const GivenCones to_keep{cones, options.count, options.target, {}};
@@ -84,7 +103,10 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
   const GivenCones& given = along.given;
   const MapOptions& of_map = along.options;
   const bool is_measured = has_charts && whole.seams.rows() > 0;
-  const Progress choosing = is_measured ? share_of(progress, measuring, 1) : progress;
+  const auto after_measuring = [&](const Progress& whole_time) {
+    return is_measured ? share_of(whole_time, measuring, 1) : whole_time;
+  };
+  const Progress choosing = after_measuring(progress);
   CreaseBorders creases;
   if (options.creases) {
     creases =
@@ -108,16 +130,33 @@ Unwrapped auto_unwrap(const Surface& whole, const Cones& cones, const AutoUnwrap
     };
     return best_of_tubes(surface, {creases, tubes}, make, objective, share);
   };
-  Made best = best_for_strokes(surface, of_map, mapped, of_maps);
-  if (!is_pinned) best = best_division(best, of_map, objective, of_maps);
+  const Made best = best_in_time(limit, objective, options, of_map, [&] {
+    const Made undivided = best_for_strokes(surface, of_map, mapped, of_maps);
+    return is_pinned ? undivided : best_division(undivided, of_map, objective, of_maps);
+  });
 
   Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),
                 objective.choices()};
   tell_further_cuts(along.further, out.result);
   if (is_packed) {
-    pack(out.result, options.margin, options.effort.value_or(preset.effort), share_of(choosing, mapping, 1));
+    const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
+    pack(out.result, options.margin, effort, share_of(after_measuring(unlimited), mapping, 1));
   }
   return out;
+}
+
+}  // namespace
+
+Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
+                      const Progress& progress) {
+  const TimeLimit limit(options.seconds, progress);
+  try {
+    return unwrapped(surface, cones, options, pins, limit, progress);
+  } catch (const Error& error) {
+    if (!limit.has_caused(error)) throw;
+    throw Error(Code::time_limit, concat("No map was made within ", *options.seconds,
+                                         " s. Allow more time, or unwrap fewer faces at once."));
+  }
 }
 
 }  // namespace lsgp

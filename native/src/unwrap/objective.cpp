@@ -15,19 +15,6 @@ namespace lsgp {
 
 namespace {
 
-// By which candidates are compared.
-struct Rank {
-  double left_out = Objective::infinity, defects = Objective::infinity, cost = Objective::infinity;
-
-  bool has_defects() const { return left_out > 0 || defects > 0; }
-  bool is_better_than(const Rank& best) const {
-    // What is less is rounding, which is to decide nothing: the first of two such candidates is taken.
-    constexpr double rounding = 0.01;
-    const auto flaws = std::tie(left_out, defects), of_best = std::tie(best.left_out, best.defects);
-    return flaws < of_best || (flaws == of_best && cost < best.cost - rounding);
-  }
-};
-
 struct Estimate {
   double cost;
   std::size_t place;
@@ -44,6 +31,13 @@ std::optional<Estimate> most_promising(const std::vector<Candidate>& candidates)
 }
 
 }  // namespace
+
+bool Objective::Rank::is_better_than(const Rank& best) const {
+  // What is less is rounding, which is to decide nothing: the first of two such candidates is taken.
+  constexpr double rounding = 0.01;
+  const auto flaws = std::tie(left_out, defects), of_best = std::tie(best.left_out, best.defects);
+  return flaws < of_best || (flaws == of_best && cost < best.cost - rounding);
+}
 
 Quality Objective::quality(MadeMap& made, const Progress& progress, double asymmetry) const {
   Quality out = measured(made, share_, progress);
@@ -77,6 +71,7 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
       refuse(Code::out_of_memory);
       continue;
     }
+    if (!best_so_far_) best_so_far_ = made;  // measuring may be stopped
     const Quality quality = candidate.quality(made, share_of(step, 1, 1));
     const Rank own{static_cast<double>(quality.left_out), static_cast<double>(quality.defects),
                    cost(quality, weights_)};
@@ -84,6 +79,10 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
     if (is_best) {
       best = made;
       rank = own;
+    }
+    if (own.is_better_than(rank_so_far_)) {
+      best_so_far_ = made;
+      rank_so_far_ = own;
     }
     note(candidate.name_of_made ? candidate.name_of_made() : candidate.name, quality, next->cost, is_best);
   }

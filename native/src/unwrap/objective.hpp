@@ -47,6 +47,9 @@ class Objective {
   // Throws CANCELLED, and what the last one throws where none can be made.
   Made choose(std::vector<Candidate> candidates, const Progress& progress);
 
+  // Of all maps that were made until now, in any choice; null where there is none.
+  const Made& best_so_far() const { return best_so_far_; }
+
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
 
@@ -65,10 +68,20 @@ class Objective {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
  private:
+  // By which candidates are compared.
+  struct Rank {
+    double left_out = infinity, defects = infinity, cost = infinity;
+
+    bool has_defects() const { return left_out > 0 || defects > 0; }
+    bool is_better_than(const Rank& best) const;
+  };
+
   const Weights weights_;
   const SquareShare share_;
   std::vector<Choice> choices_;
   double bound_ = infinity;
+  Made best_so_far_;
+  Rank rank_so_far_;
 };
 
 }  // namespace lsgp

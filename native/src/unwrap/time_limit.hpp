@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stopping a choice among maps after some time.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "lsgp/errors.hpp"
+#include "lsgp/progress.hpp"
+
+namespace lsgp {
+
+class TimeLimit {
+ public:
+  // seconds: from now on; none for no limit.
+  TimeLimit(std::optional<double> seconds, const Progress& progress);
+
+  // Also stops what it is told to when the time is over.
+  const Progress& progress() const { return limited_; }
+
+  bool is_over() const { return end_ && Clock::now() > *end_; }
+
+  // Whether it is why something ended with this error.
+  bool has_caused(const Error& error) const { return *has_stopped_ && error.code() == Code::cancelled; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::optional<Clock::time_point> end_;
+  std::shared_ptr<bool> has_stopped_;
+  Progress limited_;
+};
+
+}  // namespace lsgp
