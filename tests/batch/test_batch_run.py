@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -95,6 +96,29 @@ def test_warnings_of_one_kind_are_added_up(batch, lines_in, tmp_path: Path) -> N
     summary = (tmp_path / "out" / "summary.txt").read_text()
     assert f"most {line['missing_area_percent']:.3g} % of the area: both.off" in summary
     assert "with faces left out" in summary
+
+
+def test_the_summary_has_a_line_for_each_of_several_folders(batch, lines_in, tmp_path: Path) -> None:
+    folder = tmp_path / "library"
+    sizes = {"flat/small": 1, "flat/middle": 2, "flat/large": 4, "round": 3}
+    for name, mesh in {name: merge([grid(3, 3)] * size) for name, size in sizes.items()}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.off").write_text(off_text(mesh))
+    (folder / "flat" / "none.off").write_text(off_text(moebius_strip()))
+    done = batch("library", "--out", "out", "--no-pictures", "--preset", "paint")
+    lines = {line["asset"]: line for line in lines_in(tmp_path / "out" / "journal.jsonl")}
+    inside = [lines[f"{name}.off"] for name in ("flat/small", "flat/middle", "flat/large")]
+    assert [line["islands"] for line in inside] == [1, 2, 4]
+    rows = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if line.startswith(("flat ", ". ")))
+    flat, other = rows["flat"].split(), rows["."].split()
+    assert flat[:2] == ["4", "3"] and other[:2] == ["1", "1"]
+    assert flat[4:6] == ["2", "4"] and other[4:6] == ["3", "3"]
+    assert flat[6] == f"{statistics.median(line['coverage'] for line in inside):.2f}"
+    assert flat[8] == f"{max(line['distortion']['l2_stretch'] for line in inside):.3f}"
+
+
+def test_the_summary_of_one_folder_has_no_lines_for_folders(batch, library: Path) -> None:
+    assert "folder, medians" not in batch("library/cube.off", "--out", "one").stdout
 
 
 WRONG_USAGE = {

@@ -27,6 +27,7 @@ EMPTY: Record = {
     "missing_area_percent": None,
     "cones": None,
     "islands": None,
+    "coverage": None,
     "distortion": None,
     "flipped": None,
     "wrong_angle_sums": None,
@@ -51,6 +52,7 @@ def record_of(report: Report) -> Record:
     figures = {key: report[key] for key in _FROM_REPORT}
     missing = report["missing"] or {"faces": [], "area_percent": 0.0}
     figures |= missing_columns(len(missing["faces"]), missing["area_percent"])
+    figures["coverage"] = None if report["packing"] is None else report["packing"]["coverage"]
     return EMPTY | figures | {"warnings": dict(warnings), "cones": len(report["cones"])}
 
 
@@ -102,9 +104,10 @@ def _is_counts(value: Any) -> bool:
     return isinstance(value, dict) and all(map(_is_figure, value.values()))
 
 
+_MISSING = ("missing_faces", "missing_area_percent")
 _ALWAYS = (
     (_is_text, ("asset", "options")),
-    (_or_null(_is_figure), ("seconds", "cpu_seconds", "peak_memory_mb", "missing_faces", "missing_area_percent")),
+    (_or_null(_is_figure), ("islands", "coverage", "seconds", "cpu_seconds", "peak_memory_mb", *_MISSING)),
     (_or_null(_is_distortion), ("distortion",)),
 )
 _OF_RESULTS = {

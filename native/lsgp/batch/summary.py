@@ -28,7 +28,34 @@ def summary_table(records: Sequence[Record]) -> str:
     rows += _figures(records, results)
     lines = [counted(len(records), "asset")]
     lines += [f"{label:<28}{value:>12}  {note}".rstrip() for label, value, note in rows]
-    return "\n".join(lines)
+    return "\n".join([*lines, *_by_folder(records)])
+
+
+def _by_folder(records: Sequence[Record]) -> list[str]:
+    """A line of medians and highest values for each folder beside the others; none where there is only one."""
+    folders: dict[str, list[Record]] = {}
+    for record in sorted(records, key=lambda record: record["asset"]):
+        folder, is_inside, _ = record["asset"].partition("/")
+        folders.setdefault(folder if is_inside else ".", []).append(record)
+    if len(folders) < 2:
+        return []
+    columns = ("assets", "results", "seconds", "highest", "islands", "highest", "square", "L2", "highest")
+    lines = ["", f"{'folder, medians':<28}{''.join(f'{column:>10}' for column in columns)}"]
+    for folder, inside in folders.items():
+        results = [record for record in inside if record["status"] == OK]
+        figures = [
+            *_median_and_highest(inside, ".3g", lambda record: record["seconds"]),
+            *_median_and_highest(results, "g", lambda record: record["islands"]),
+            *_median_and_highest(results, ".2f", lambda record: record["coverage"])[:1],
+            *_median_and_highest(results, ".3f", lambda record: record["distortion"]["l2_stretch"]),
+        ]
+        lines.append(f"{folder:<28}{''.join(f'{text:>10}' for text in (len(inside), len(results), *figures))}")
+    return lines
+
+
+def _median_and_highest(records: Sequence[Record], form: str, figure) -> tuple[str, str]:
+    values = [figure(record) for record in records if figure(record) is not None]
+    return (format(statistics.median(values), form), format(max(values), form)) if values else ("-", "-")
 
 
 def _incomplete(results: Sequence[Record]) -> list[tuple[str, int, str]]:

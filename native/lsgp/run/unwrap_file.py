@@ -48,7 +48,7 @@ from .unwrap_options import (
 )
 
 # What a file that took longer to read still has.
-LEAST_SECONDS = 0.01
+LEAST_SECONDS = 1e-9
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -164,7 +164,7 @@ def _limited(progress: Progress | None, seconds: float | None) -> Progress | Non
 
     def limited(done: float) -> bool | None:
         if time.monotonic() > end:
-            raise SolverError(TIME_LIMIT, "The time limit was reached before the map was made. Allow more time.")
+            raise SolverError(TIME_LIMIT, "No map was made within the time limit. Allow more time.")
         return None if progress is None else progress(done)
 
     return limited

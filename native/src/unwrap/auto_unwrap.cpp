@@ -72,16 +72,15 @@ void pack(Result& result, double margin, PackingEffort effort, const Progress& p
 }
 
 // What `make` returns, or when the time is over the best map of the objective until then.
-Made best_in_time(const TimeLimit& limit, const Objective& objective, const AutoUnwrapOptions& options,
-                  const MapOptions& of_map, const std::function<Made()>& make) try {
+Made best_in_time(const TimeLimit& limit, const Objective& objective, const MapOptions& of_map,
+                  const std::function<Made()>& make) try {
   return make();
 } catch (const Error& error) {
   const Made best = objective.best_so_far();
   if (!limit.has_caused(error) || !best) throw;
   tell_findings(*best, of_map.of_map);
-  const std::string message =
-      concat("The time limit of ", *options.seconds, " s was reached: this is the best map made until then.");
-  best->result.warnings.push_back({Code::time_limit, message, {}});
+  best->result.warnings.push_back(
+      {Code::time_limit, "The time limit was reached: this is the best map made until then.", {}});
   return best;
 }
 
@@ -130,7 +129,7 @@ Unwrapped unwrapped(const Surface& whole, const Cones& cones, const AutoUnwrapOp
     };
     return best_of_tubes(surface, {creases, tubes}, make, objective, share);
   };
-  const Made best = best_in_time(limit, objective, options, of_map, [&] {
+  const Made best = best_in_time(limit, objective, of_map, [&] {
     const Made undivided = best_for_strokes(surface, of_map, mapped, of_maps);
     return is_pinned ? undivided : best_division(undivided, of_map, objective, of_maps);
   });
@@ -154,8 +153,8 @@ Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwr
     return unwrapped(surface, cones, options, pins, limit, progress);
   } catch (const Error& error) {
     if (!limit.has_caused(error)) throw;
-    throw Error(Code::time_limit, concat("No map was made within ", *options.seconds,
-                                         " s. Allow more time, or unwrap fewer faces at once."));
+    throw Error(Code::time_limit,
+                "No map was made within the time limit. Allow more time, or unwrap fewer faces at once.");
   }
 }
 

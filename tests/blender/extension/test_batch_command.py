@@ -326,8 +326,11 @@ def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, ho
 
 
 @pytest.mark.one_blender
-@pytest.mark.parametrize("options", [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1]])
-def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
+@pytest.mark.parametrize(
+    "options",
+    [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1], ["--time-limit", 60]],
+)
+def test_other_ways_to_pack_and_time_limits_are_refused(scaled, tmp_path, options):
     sized = ["--texture-size", 512] if "tight" in options else []
     assert run(scaled, "--out", tmp_path / "out", "--preset", "bake", *options, *sized) == 3
     (line,) = lines_of(tmp_path / "out")
