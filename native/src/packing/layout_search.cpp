@@ -422,17 +422,26 @@ PackedLayout LayoutSearch::best() {
   if (options_.snap == 0) tolerance_ = expected_extent() * std::min(coarsest, coarsest_of_many / std::sqrt(count));
   for (const Body& body : bodies_)
     outline_.push_back(body.keeps_scale ? body.outline : body.outline.simplified(tolerance_));
-  constexpr double few = 8, some = 64;
-  directions_ = count <= few ? 16 : count <= some ? 4 : 0;
-  if (options_.effort == PackingEffort::quick) directions_ = count <= few ? 8 : 0;
+  directions_ = directions_among(count);
   search(false);
   if (is_hardly_filled()) {
-    const State aligned = std::move(now_);
+    State aligned = std::move(now_);
+    Array<Array<Complex>> turns = std::move(turns_);
     now_ = {};
     search(true);
-    if (now_.side > shorter_unaligned * aligned.side) now_ = aligned;
+    if (now_.side > shorter_unaligned * aligned.side) {
+      now_ = std::move(aligned);
+      turns_ = std::move(turns);  // as its poses are numbered
+    }
   }
   return layout();
+}
+
+// The directions in a quarter turn of one of so many equal bodies.
+int LayoutSearch::directions_among(double count) const {
+  constexpr double few = 8, some = 64;
+  if (options_.effort == PackingEffort::quick) return count <= few ? 8 : 0;
+  return count <= few ? 16 : count <= some ? 4 : 0;
 }
 
 // Throws WRONG_PARAMETER where blocks are so small that a raster of them would not fit into memory, or so large that
@@ -454,8 +463,14 @@ void LayoutSearch::search(bool also_along_axes) {
   constexpr int least_directions = 4;
   const int directions =
       also_along_axes && free_.size() <= most_quick ? std::max(directions_, least_directions) : directions_;
+  double area = 0;
+  for (const Index b : free_) area += bodies_[b].area;
   turns_.clear();
-  for (const Body& body : bodies_) turns_.push_back(turns_of(body, directions, also_along_axes));
+  for (const Body& body : bodies_) {
+    // One that is as large as many others together is turned like one of as few as would fill the area.
+    const int own = body.keeps_place || !(body.area > 0) ? 0 : directions_among(area / body.area);
+    turns_.push_back(turns_of(body, std::max(directions, own), also_along_axes));
+  }
   find_first(by_size());
   for (const Index b : free_) now_.order.pose[b] = now_.found.placed[b].pose;
   const auto effort = static_cast<std::size_t>(options_.effort);

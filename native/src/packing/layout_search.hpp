@@ -89,6 +89,7 @@ class LayoutSearch {
   double gap(double side) const;
   double estimated_side(double hull_share) const;
   Order by_size() const;
+  int directions_among(double count) const;
   void rasterize(double side);
   Array<TileSpace> tiles(double side) const;
   Attempt attempt(const Order& order, double side, double room = 1);

@@ -197,6 +197,24 @@ def test_an_island_that_is_alone_is_turned_until_it_fits_best() -> None:
         lsgp.pack_islands(uv, island, turned="thirds")
 
 
+@pytest.mark.parametrize("scraps", [20, 100, 400])
+def test_a_large_island_is_turned_among_scraps_as_if_it_were_alone(scraps: int) -> None:
+    around = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    rim = np.stack([np.cos(around), 0.4 * np.sin(around)], axis=1)
+    body = np.stack([np.zeros_like(rim), rim, np.roll(rim, -1, axis=0)], axis=1)
+    alone = lsgp.pack_islands(body, np.zeros(len(body), np.int32), margin=0, effort="quick")
+    small, owner = squares(scraps, 0.02)
+    uv = np.concatenate([body, small])
+    island = np.concatenate([np.zeros(len(body), np.int32), owner + 1])
+    packed = lsgp.pack_islands(uv, island, margin=0, effort="quick")
+
+    def side(new: np.ndarray) -> float:
+        """Of the square, beside the length of the body."""
+        return 2 / float(np.linalg.norm(new[0, 1] - new[30, 1]))
+
+    assert side(packed) <= 1.05 * side(alone) < 1.9
+
+
 @pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
 def test_an_island_without_a_border_is_packed_like_others(order: list[int]) -> None:
     """Two triangles on each other, with the same corners."""
