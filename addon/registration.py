@@ -29,6 +29,13 @@ from .operators.cuts.steer import MESH_OT_cone_steer_cuts
 from .operators.inspection.measure_distortion import UV_OT_cone_measure
 from .operators.inspection.select_reported import MESH_OT_cone_select_reported
 from .operators.inspection.show_texture import UV_OT_cone_texture
+from .operators.islands.align import UV_OT_cone_align
+from .operators.islands.grid import UV_OT_cone_grid
+from .operators.islands.orient import UV_OT_cone_orient
+from .operators.islands.rectify import UV_OT_cone_rectify
+from .operators.islands.rip import UV_OT_cone_rip
+from .operators.islands.stitch import UV_OT_cone_stitch
+from .operators.islands.straighten import UV_OT_cone_straighten
 from .operators.quads.remesh import OBJECT_OT_cone_remesh_to_quads
 from .operators.shared import redo, running
 from .operators.texels.get_density import UV_OT_cone_texel_get
@@ -63,6 +70,13 @@ CLASSES = (
     UV_OT_cone_auto_unwrap,
     UV_OT_cone_unwrap,
     UV_OT_cone_pack,
+    UV_OT_cone_straighten,
+    UV_OT_cone_rectify,
+    UV_OT_cone_grid,
+    UV_OT_cone_align,
+    UV_OT_cone_orient,
+    UV_OT_cone_stitch,
+    UV_OT_cone_rip,
     OBJECT_OT_cone_remesh_to_quads,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
@@ -80,6 +94,7 @@ CLASSES = (
     menus.VIEW3D_MT_cone_angles,
     menus.VIEW3D_MT_cone_seeing,
     menus.VIEW3D_MT_cone_texels,
+    menus.VIEW3D_MT_cone_islands,
     menus.VIEW3D_MT_cone_unwrap,
     *PANELS,
     VIEW3D_PT_cone_angles,

@@ -27,6 +27,7 @@ PARTS = lsgp.build_ledger(WHOLE, BALL.cones)
 MAP = {"corner_uv": RESULT.corner_uv, "old_uv": RESULT.corner_uv, "island": RESULT.island}
 CALL = {"surface": WHOLE, "cones": BALL.cones, "angles": ANGLES, "options": lsgp.Options(), "progress": None}
 TEXELS = {"surface": WHOLE, "corner_uv": RESULT.corner_uv, "texture_size": (1024, 512)}
+ISLANDS = {"surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island}
 CELLS = {"rotation_order": 4, "cell": 1.0}
 
 # By name the function and arguments it accepts; all parameters are among them.
@@ -161,6 +162,24 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"locks": {"rotation": [0]}, "snap": None, "progress": None},
         },
     ),
+    "shape_patches": (
+        lsgp.shape_patches,
+        {
+            **{"surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv, "triangles": np.arange(len(BALL.triangles))},
+            **{"shape": "rectangle", "corners": (), "pinned": (), "progress": None},
+        },
+    ),
+    "upright_turns": (lsgp.upright_turns, ISLANDS | {"up": np.array([0.0, 0.0, 1.0])}),
+    "turn_islands": (
+        lsgp.turn_islands,
+        {name: ISLANDS[name] for name in ("corner_uv", "island")}
+        | {"turns": np.full(int(FREE_RESULT.island.max()) + 1, 0.5)},
+    ),
+    "align_islands": (
+        lsgp.align_islands,
+        {"boxes": np.array([[0.0, 0.0, 1.0, 1.0]]), "side": "left", "fixed": np.array([False])},
+    ),
+    "stitch_islands": (lsgp.stitch_islands, ISLANDS | {"edges": FREE_RESULT.cut_edges, "fixed": np.array([0])}),
     "find_stacks": (
         lsgp.find_stacks,
         {"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "mirrored": True, "progress": None},
@@ -231,7 +250,7 @@ NOT_CALLED = {
     ),
     *("MovedCut", "Placement", "Prescription", "QuadMesh", "QuadQuality", "QuadRemesh", "ReleasedFeature", "Result"),
     *("RepairReport", "SeamQuality", "SeamlessReport", "Stacks", "TexelDensity", "Transition", "TriangleDistortion"),
-    "Tubes",
+    *("ShapedMap", "StitchedMap", "Tubes"),
 }
 
 

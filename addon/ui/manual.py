@@ -11,12 +11,20 @@ CONES = "how-to/choosing-cones"
 ANGLES = "reference/cone-angles"
 CUTS = "how-to/cuts"
 TEXELS = "how-to/texel-density"
+ISLANDS = "how-to/islands"
 DIRECTION = "how-to/texture-direction"
 
 PAGES = {
     identifiers.AUTO_UNWRAP: FIRST_UNWRAP,
     identifiers.UNWRAP: FIRST_UNWRAP,
     identifiers.PACK: "how-to/packing",
+    identifiers.STRAIGHTEN: ISLANDS,
+    identifiers.RECTIFY: ISLANDS,
+    identifiers.GRID: ISLANDS,
+    identifiers.ALIGN: ISLANDS,
+    identifiers.ORIENT: ISLANDS,
+    identifiers.STITCH: ISLANDS,
+    identifiers.RIP: ISLANDS,
     identifiers.REMESH_TO_QUADS: "how-to/quads",
     identifiers.MARK: CONES,
     identifiers.SELECT: CONES,

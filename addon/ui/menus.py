@@ -47,6 +47,24 @@ class VIEW3D_MT_cone_texels(bpy.types.Menu):
         layout.operator(identifiers.TEXEL_SELECT)
 
 
+class VIEW3D_MT_cone_islands(bpy.types.Menu):
+    bl_idname = "VIEW3D_MT_cone_islands"
+    bl_label = "Islands"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator(identifiers.STRAIGHTEN)
+        layout.operator(identifiers.RECTIFY)
+        layout.operator(identifiers.GRID)
+        layout.separator()
+        layout.operator_menu_enum(identifiers.ORIENT, "by")
+        layout.operator_menu_enum(identifiers.ALIGN, "side")
+        layout.separator()
+        layout.operator(identifiers.STITCH)
+        layout.operator(identifiers.RIP)
+
+
 class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
     bl_idname = "VIEW3D_MT_cone_unwrap"
     bl_label = "Cone Unwrap"
@@ -58,6 +76,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator(identifiers.AUTO_UNWRAP)
         layout.operator(identifiers.UNWRAP)
         layout.operator(identifiers.PACK)
+        layout.menu(VIEW3D_MT_cone_islands.bl_idname)
         layout.operator(identifiers.REMESH_TO_QUADS)
         layout.separator()
         layout.operator(identifiers.MARK).clear = False

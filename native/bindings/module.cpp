@@ -873,6 +873,28 @@ FloatArray pack_islands(const FloatArray& corner_uv, const IndexArray& island, c
   return to_array(packed.data(), {static_cast<py::ssize_t>(islands.size()), 3, 2});
 }
 
+py::dict shape_patches(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, const IndexArray& triangles,
+                       const std::string& shape, const IndexArray& corners, const IndexArray& pinned,
+                       const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
+  const std::vector<Index> chosen = to_vector("triangles", triangles), at = to_vector("corners", corners),
+                           fixed = to_vector("pinned", pinned);
+  const lsgp::Progress tell = to_progress(progress);
+  const auto wanted = choose<lsgp::PatchShape>(shape, {{"grid", lsgp::PatchShape::grid},
+                                                       {"even-grid", lsgp::PatchShape::even_grid},
+                                                       {"strip", lsgp::PatchShape::strip},
+                                                       {"rectangle", lsgp::PatchShape::rectangle}});
+  const lsgp::ShapedMap shaped =
+      without_gil([&] { return lsgp::shape_patches(surface, uv, chosen, wanted, at, fixed, tell); });
+  py::dict out;
+  out["corner_uv"] = to_array(shaped.corner_uv.data(), {static_cast<py::ssize_t>(shaped.corner_uv.rows() / 3), 3, 2});
+  out["moved"] = to_array(shaped.moved);
+  out["patches"] = shaped.patches;
+  out["warnings"] = to_findings(shaped.warnings);
+  return out;
+}
+
 py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
   const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
   return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
@@ -938,6 +960,8 @@ PYBIND11_MODULE(_lsgp, module) {
            "surface"_a)
       .def("grab", &grab, "cuts"_a, "path"_a, "nodes"_a);
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
+  module.def("shape_patches", &shape_patches, "surface"_a, "corner_uv"_a, "triangles"_a, "shape"_a, "corners"_a,
+             "pinned"_a, "progress"_a);
   module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
   module.def("measure_charts", &measure_charts, "surface"_a, "options"_a, "progress"_a);
   module.def("preset", &preset, "name"_a);

@@ -66,6 +66,7 @@ from .images.mip_levels import pad_mip_levels
 from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .io.png_files import write_png
+from .layouts.arranging import StitchedMap, align_islands, stitch_islands, turn_islands, upright_turns
 from .layouts.islands import correct_aspect, fit_placement
 from .layouts.packing import pack_islands
 from .layouts.stacking import Stacks, find_stacks
@@ -92,6 +93,7 @@ from .results import (
     SeamQuality,
     Tubes,
 )
+from .shaping import ShapedMap, shape_patches
 from .stitching import stitch_borders
 from .surface import Pins, Surface
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
@@ -131,9 +133,11 @@ __all__ = [
     "SeamQuality",
     "Seamless",
     "SeamlessReport",
+    "ShapedMap",
     "Solver",
     "SolverError",
     "Stacks",
+    "StitchedMap",
     "Surface",
     "TexelDensity",
     "TexelLayout",
@@ -142,6 +146,7 @@ __all__ = [
     "TriangleDistortion",
     "Tubes",
     "Weights",
+    "align_islands",
     "at_texel_density",
     "auto_unwrap",
     "build_ledger",
@@ -176,12 +181,16 @@ __all__ = [
     "quad_quality",
     "read_mesh_file",
     "remesh_to_quads",
+    "shape_patches",
     "singular_values",
     "split_into_paths",
     "stitch_borders",
+    "stitch_islands",
     "texel_density",
     "triangle_distortion",
     "triangle_texel_density",
+    "turn_islands",
+    "upright_turns",
     "write_mesh_file",
     "write_png",
 ]

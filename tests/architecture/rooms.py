@@ -163,6 +163,7 @@ API = (
     "ledger",
     "options",
     "results",
+    "shaping",
     "stitching",
     "surface",
     "triangles",
@@ -205,6 +206,10 @@ SOURCES = {
         *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
         *("repair", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
         *("packing", "api"),
+    ),
+    "shaping": (
+        *("solvers", "plane", "cut", "transitions", "systems", "unfold", "prescription", "sites", "search", "repair"),
+        *("division", "pieces", "split", "placement", "seamless", "quads", "kept", "packing", "api", "unwrap"),
     ),
 }
 
@@ -262,6 +267,7 @@ TREES = (
             Room("cuts", ("cuts/*",), ("shared",)),
             Room("inspection", ("inspection/*",), ("shared",)),
             Room("texels", ("texels/*",), ("shared",)),
+            Room("islands", ("islands/*",), ("shared",)),
             Room("quads", ("quads/*",), ("shared", "unwrapping")),
         ),
     ),

@@ -57,6 +57,8 @@ IN_EDIT_MODE = {
     "auto tile": call("uv.cone_auto_unwrap", preset="TILE"),
     "unwrap": call("uv.cone_unwrap", mode="LOW_STRETCH"),
     "pack": call("uv.cone_pack", effort="QUICK", margin=8, scale="FILL", in_place=False),
+    "orient": call("uv.cone_orient"),
+    "rip": call("uv.cone_rip"),
     "measure": call("uv.cone_measure"),
     "set density": call("uv.cone_texel_set", density=64.0),
     "clear data": call("mesh.cone_clear_data"),
@@ -78,6 +80,8 @@ IN_EDIT_MODE = {
     "suggest": call("mesh.cone_suggest"),
 }
 # Undone and redone in a window, in in_window.
+ON_QUADS = {f"uv.cone_{name}" for name in ("straighten", "rectify", "grid", "align", "stitch")}
+"""Undone on other maps, in islands."""
 WITH_EVENTS = {"mesh.cone_draw_up", "mesh.cone_edit", "mesh.cone_edit_cuts"}
 # Writing pixels makes steps of its own kind; the others change nothing.
 WITHOUT_STEP = {"mesh.cone_update_table", "uv.cone_extend_image", "uv.cone_wait_for_redo"}

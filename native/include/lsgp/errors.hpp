@@ -39,6 +39,7 @@ enum class Code {
   pin_non_finite,
   pins_conflict,
   wrong_parameter,
+  shape_impossible,  // of single patches a finding
   // TopologyError
   not_orientable,
   too_few_cones,

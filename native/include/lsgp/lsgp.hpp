@@ -20,6 +20,7 @@
 #include "lsgp/progress.hpp"
 #include "lsgp/quads.hpp"
 #include "lsgp/result.hpp"
+#include "lsgp/shaping.hpp"
 #include "lsgp/solver.hpp"
 #include "lsgp/surface.hpp"
 #include "lsgp/tubes.hpp"

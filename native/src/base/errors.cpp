@@ -23,6 +23,7 @@ const char* name(Code code) {
     case Code::pin_non_finite: return "PIN_NON_FINITE";
     case Code::pins_conflict: return "PINS_CONFLICT";
     case Code::wrong_parameter: return "WRONG_PARAMETER";
+    case Code::shape_impossible: return "SHAPE_IMPOSSIBLE";
     case Code::not_orientable: return "NOT_ORIENTABLE";
     case Code::too_few_cones: return "TOO_FEW_CONES";
     case Code::cuts_blocked: return "CUTS_BLOCKED";

@@ -15,8 +15,7 @@ struct ComponentTubes {
 
 // Between its ends a tube is a ring that unfolds into a strip; what closes it is left to itself.
 //
-// A quad is two triangles on both sides of an edge that no cut may follow; where all edges may be cut, on both sides of
-// the longest edge of both. A ring of quads is closed across opposite sides, and a tube is a stack of rings joined
+// Quads are as of find_quads. A ring of them is closed across opposite sides, and a tube is a stack of rings joined
 // along whole rims. Where the cone that a ring lies on develops into more than half a disk, its inner end is closed
 // better than unrolled: tubes end there.
 ComponentTubes find_component_tubes(const MetricMesh& surface);

@@ -111,6 +111,7 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
         ("uv.cone_auto_unwrap", None),
         ("uv.cone_unwrap", None),
         ("uv.cone_pack", None),
+        ("VIEW3D_MT_cone_islands", None),
         ("object.cone_remesh_to_quads", None),
         ("mesh.cone_mark", False),
         ("mesh.cone_mark", True),
@@ -138,6 +139,14 @@ def test_the_menu_of_angles_has_their_operators():
     bpy.types.VIEW3D_MT_cone_angles.draw(stand_in, bpy.context)
     names = [name for name, _, _ in stand_in.layout.drawn]
     assert names == [f"mesh.cone_{verb}" for verb in ("set_angle", "spread_rest", "snap_angles", "suggest", "preview")]
+
+
+def test_the_menu_of_islands_has_their_operators():
+    stand_in = type("Menu", (), {"layout": RecordingLayout()})()
+    bpy.types.VIEW3D_MT_cone_islands.draw(stand_in, bpy.context)
+    names = [name for name, _, _ in stand_in.layout.drawn]
+    verbs = ("straighten", "rectify", "grid", "orient", "align", "stitch", "rip")
+    assert names == [f"uv.cone_{verb}" for verb in verbs]
 
 
 def test_the_unwrap_menu_with_which_u_begins_has_auto_unwrap_and_the_submenu_at_its_top():

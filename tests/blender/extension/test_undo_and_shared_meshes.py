@@ -9,6 +9,7 @@ from operator_runs import (
     IN_EDIT_MODE,
     IN_OBJECT_MODE,
     KINDS,
+    ON_QUADS,
     WITH_EVENTS,
     WITHOUT_STEP,
     Run,
@@ -49,7 +50,8 @@ def replaced(name: str) -> list[int]:
 
 def test_every_operator_is_here() -> None:
     undone = {kind.bl_idname for kind in KINDS if "UNDO" in kind.bl_options}
-    assert undone == {run.operator for run in (*IN_OBJECT_MODE.values(), *IN_EDIT_MODE.values())} | WITH_EVENTS
+    runs = {run.operator for run in (*IN_OBJECT_MODE.values(), *IN_EDIT_MODE.values())}
+    assert undone == runs | WITH_EVENTS | ON_QUADS
     assert {kind.bl_idname for kind in KINDS} - undone == WITHOUT_STEP
 
 
