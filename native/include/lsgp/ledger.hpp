@@ -14,6 +14,7 @@ namespace lsgp {
 // minus it on a boundary. Angles and curvatures in radians.
 struct LedgerPart {
   std::vector<Index> triangles;   // (m)
+  std::vector<Index> inside;      // (v) vertices that are not on a boundary
   std::vector<Index> cones;       // (k) indices into the caller's list of those that count here
   std::vector<double> curvature;  // (k) NaN if the angle is automatic
   int euler = 0;                  // V - E + F; 0 for a one-sided surface, which has no map

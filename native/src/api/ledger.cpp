@@ -18,6 +18,9 @@ LedgerPart account(const Component& component, ComponentCones cones, const Optio
   const HalfedgeMesh& mesh = component.mesh;
   LedgerPart out;
   out.triangles = component.source_triangle;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] == none) out.inside.push_back(component.source_vertex[v]);
+  }
   out.euler = mesh.euler;
   out.borders = static_cast<int>(mesh.boundary_loops.size());
   out.required = 2 * M_PI * mesh.euler;

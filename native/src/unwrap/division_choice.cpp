@@ -43,6 +43,9 @@ Made best_division(const Made& usual, const MapOptions& options, Objective& obje
   const Progress untimed = share_of(progress, 1, 1);
   const Quality quality = objective.quality(*usual, untimed);
   const double least = usual->surface->parts.count();
+  // Islands that are not divided.
+  const PerComponent<char>& are_plain = usual->surface->parts.are_plain();
+  const auto whole = static_cast<double>(std::count(are_plain.begin(), are_plain.end(), 1));
   const Pins no_pins;
   const auto divided = [&](const MapOptions& others) {
     const Made made = maps_of(usual->surface, no_pins)(usual->cones, others, untimed);
@@ -57,13 +60,14 @@ Made best_division(const Made& usual, const MapOptions& options, Objective& obje
   fewer.of_map.compact = compact == Compactness::sparing ? Compactness::off : Compactness::sparing;
 
   const auto expected_further = [&]() -> std::optional<double> {
-    const double islands = std::max(quality.islands + 1, quality.islands * further_islands.islands);
+    const double islands =
+        std::max(quality.islands + 1, whole + (quality.islands - whole) * further_islands.islands);
     return cost(with_islands(quality, islands, further_islands.filled, compact), objective.weights());
   };
   const auto expected_fewer = [&]() -> std::optional<double> {
     if (quality.islands <= least) return {};
     const Expected expected = fewer_islands(compact);
-    const double islands = std::max(least, quality.islands * expected.islands);
+    const double islands = std::max(least, whole + (quality.islands - whole) * expected.islands);
     return cost(with_islands(quality, islands, expected.filled, compact), objective.weights());
   };
   const auto as_they_are = [&](const Progress&) { return usual; };

@@ -28,6 +28,7 @@ SurfaceParts::SurfaceParts(Borrowed<const Surface> surface)
   const std::vector<LedgerPart> found = build_ledger(surface_, {});
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (const Index f : found[i].triangles) of_triangle_[f] = static_cast<Index>(i);
+    are_plain_.push_back(found[i].inside.empty() && found[i].euler == 1);
   }
   triangle_areas_ = areas_of(surface_);
   areas_.assign(found.size(), 0);
@@ -37,6 +38,9 @@ SurfaceParts::SurfaceParts(Borrowed<const Surface> surface)
     if (of_triangle_[f] == none) continue;
     areas_[of_triangle_[f]] += triangle_areas_[f];
     for (Index k = 0; k < 3; ++k) of_vertex_[corner[3 * f + k]] = of_triangle_[f];
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (const Index v : found[i].inside) of_vertex_[v] = static_cast<Index>(i);
   }
   area_ = std::accumulate(areas_.begin(), areas_.end(), 0.0);
   std::partial_sum(first_corner_.begin(), first_corner_.end(), first_corner_.begin());

@@ -21,10 +21,13 @@ class SurfaceParts {
   Index count() const { return static_cast<Index>(areas_.size()); }
   // none for triangles that are left out.
   const PerTriangle<Index>& of_triangle() const { return of_triangle_; }
-  // One of those that a vertex belongs to, or none.
+  // One of those that a vertex belongs to, inside if it is inside of some, or none.
   const PerVertex<Index>& of_vertex() const { return of_vertex_; }
   const PerComponent<double>& areas() const { return areas_; }
   double area() const { return area_; }  // of all
+  // Whether each is a disk without vertices inside, such as a fin of a few triangles: whatever is chosen, it unfolds
+  // without cones, cuts and stretch.
+  const PerComponent<char>& are_plain() const { return are_plain_; }
   // (m) of each triangle.
   const PerTriangle<double>& triangle_areas() const { return triangle_areas_; }
 
@@ -40,6 +43,7 @@ class SurfaceParts {
   PerVertex<Index> of_vertex_;
   PerTriangle<double> triangle_areas_;
   PerComponent<double> areas_;
+  PerComponent<char> are_plain_;
   double area_ = 0;
   Array<Index> first_corner_, corners_;  // of a vertex those from its first one up to that of the next
 };

@@ -133,6 +133,11 @@ CompletedCones SymmetryChoice::symmetric_cones(const Progress& progress) {
     if (finding.code != Code::not_symmetric) continue;
     for (const Index f : finding.elements.indices) is_odd[f] = 1;
   }
+  // Those without cones and cuts are symmetric or not, whatever is chosen.
+  for (std::size_t f = 0; f < is_odd.size(); ++f) {
+    const Index part = parts.of_triangle()[f];
+    if (part != none && parts.are_plain()[part]) is_odd[f] = 1;
+  }
   const auto says_odd = [](const Finding& finding) { return finding.code == Code::not_symmetric; };
   findings.erase(std::remove_if(findings.begin(), findings.end(), says_odd), findings.end());
   double even = 0, whole = 0;
