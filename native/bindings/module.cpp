@@ -895,6 +895,12 @@ py::dict shape_patches(const SurfaceArrays& surface_arrays, const FloatArray& co
   return out;
 }
 
+double usual_margin(const FloatArray& corner_uv, const IndexArray& island, int tiles) {
+  const std::vector<Index> islands = to_vector("island", island);
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, static_cast<py::ssize_t>(islands.size()));
+  return without_gil([&] { return lsgp::usual_margin(uv, islands, tiles); });
+}
+
 py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
   const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
   return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
@@ -962,6 +968,7 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("shape_patches", &shape_patches, "surface"_a, "corner_uv"_a, "triangles"_a, "shape"_a, "corners"_a,
              "pinned"_a, "progress"_a);
+  module.def("usual_margin", &usual_margin, "corner_uv"_a, "island"_a, "tiles"_a);
   module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
   module.def("measure_charts", &measure_charts, "surface"_a, "options"_a, "progress"_a);
   module.def("preset", &preset, "name"_a);

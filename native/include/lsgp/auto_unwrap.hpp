@@ -86,7 +86,7 @@ struct AutoUnwrapOptions {
   // and those for whose margins there is no room.
   bool pack = true;
   std::optional<PackingEffort> effort;  // none: that of the preset
-  double margin = PackingOptions().margin;
+  std::optional<double> margin;  // none: usual_margin
   // After so many the best map made until then is the result, and TIME_LIMIT says so.
   std::optional<double> seconds;
 };

@@ -52,7 +52,8 @@ class Packing:
 
     pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if the
         margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side; None: `DEFAULT_MARGIN`
-        before the layout gets a texel density, which scales it too. udim: over how many UDIM tiles a tight layout is
+        or, of so many islands that gaps would take more room than they do, less, before the layout gets a texel
+        density, which scales it too. udim: over how many UDIM tiles a tight layout is
         spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
     """
@@ -255,7 +256,9 @@ def laid_out(
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
-    margin = DEFAULT_MARGIN if packing.margin is None else packing.margin
+    margin = packing.margin
+    if margin is None:
+        margin = _lsgp.usual_margin(result.corner_uv, result.island, packing.udim or 1)
     pack: Pack = "tight"
     try:
         packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
@@ -239,6 +240,36 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   }
   monitor.advance(1);
   return out;
+}
+
+double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island, int tiles) {
+  constexpr double least = 0.5 / 1024;
+  constexpr double filled = 0.7;  // of a tile, by islands and gaps, as layouts are about
+  const Index count = island.empty() ? 0 : std::max(1 + *std::max_element(island.begin(), island.end()), 0);
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Array<Box> boxes(count, Box{far, -far, far, -far});
+  double area = 0, around = 0, islands = 0;
+  for (std::size_t t = 0; t < island.size(); ++t) {
+    if (island[t] < 0) continue;
+    const auto corners = corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t));
+    const Eigen::Vector2d a = (corners.row(1) - corners.row(0)).transpose();
+    const Eigen::Vector2d b = (corners.row(2) - corners.row(0)).transpose();
+    area += std::abs(a[0] * b[1] - a[1] * b[0]) / 2;
+    const Eigen::Vector2d low = corners.colwise().minCoeff().transpose(),
+                          high = corners.colwise().maxCoeff().transpose();
+    boxes[island[t]] = lsgp::around(boxes[island[t]], {low[0], high[0], low[1], high[1]});
+  }
+  for (const Box& box : boxes) {
+    if (box.left > box.right) continue;
+    around += box.right - box.left + box.top - box.bottom;
+    ++islands;
+  }
+  const double usual = PackingOptions().margin;
+  const double side = std::sqrt(2 * area / (filled * tiles));
+  if (!(side > 0) || !std::isfinite(side)) return usual;
+  // Gaps g take g * around + islands * g^2.
+  const double gap = (std::sqrt(around * around + 4 * islands * area) - around) / (2 * islands);
+  return std::clamp(gap / (2 * side), least, usual);
 }
 
 }  // namespace lsgp

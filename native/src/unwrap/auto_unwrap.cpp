@@ -60,9 +60,9 @@ Made best_for_strokes(const Surface& surface, const MapOptions& options,
 }
 
 // Packs the islands of a map, unless its margins leave no room.
-void pack(Result& result, double margin, PackingEffort effort, const Progress& progress) try {
+void pack(Result& result, std::optional<double> margin, PackingEffort effort, const Progress& progress) try {
   PackingOptions options;
-  options.margin = margin;
+  options.margin = margin ? *margin : usual_margin(result.corner_uv, result.island);
   options.turns = turns_of(result);
   options.effort = effort;
   result.corner_uv = pack_islands(result.corner_uv, result.island, options, progress);

@@ -31,6 +31,7 @@ double filled_when_packed(const Result& result, const Progress& progress) try {
   PackingOptions options;
   options.turns = turns_of(result);
   options.effort = PackingEffort::quick;
+  options.margin = usual_margin(result.corner_uv, result.island);
   return area_of(result, pack_islands(result.corner_uv, result.island, options, progress));
 } catch (const Error& error) {
   if (error_kind(error.code()) != ErrorKind::input) throw;

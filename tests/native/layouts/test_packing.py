@@ -12,6 +12,7 @@ from functools import cache
 import lsgp
 import meshes
 import numpy as np
+import packing_checks
 import pytest
 from island_gaps import least_gap
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
@@ -213,6 +214,20 @@ def test_a_large_island_is_turned_among_scraps_as_if_it_were_alone(scraps: int) 
         return 2 / float(np.linalg.norm(new[0, 1] - new[30, 1]))
 
     assert side(packed) <= 1.05 * side(alone) < 1.9
+
+
+@pytest.mark.parametrize("count", [100, 2_000, 20_000])
+def test_margins_of_many_islands_take_no_more_room_than_these(count: int) -> None:
+    corner = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0]])
+    positions = (np.random.default_rng(0).uniform(size=(count, 1, 3)) + corner).reshape(-1, 3)
+    soup = lsgp.Surface(positions, np.arange(3 * count, dtype=np.int32).reshape(-1, 3))
+    result = lsgp.auto_unwrap(soup, preset="paint")
+    assert coverage(result.corner_uv, result.island) > 0.25
+    z = result.corner_uv @ [1, 1j]
+    sides = np.stack([z, np.roll(z, -1, axis=1)], axis=2).reshape(-1, 2)
+    gap = packing_checks.least_gap(sides, np.repeat(result.island, 3), 9 / 1024)
+    # A texel at least; and as wide as usual as long as there is room.
+    assert gap >= (8 if count == 100 else 1) / 1024 * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
