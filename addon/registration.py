@@ -47,9 +47,9 @@ from .operators.unwrapping.from_cones import UV_OT_cone_unwrap
 from .operators.unwrapping.mark_up import MESH_OT_cone_mark_up
 from .operators.unwrapping.pack import UV_OT_cone_pack
 from .overlay import handlers
-from .ui import manual, menus, presets
+from .ui import manual, menus, pie, presets
 from .ui.angle_panel import VIEW3D_PT_cone_angles
-from .ui.panels import PANELS
+from .ui.panels import PANELS, UV_EDITOR_PANELS
 from .ui.preferences import ConeUnwrapPreferences
 
 CLASSES = (
@@ -96,7 +96,9 @@ CLASSES = (
     menus.VIEW3D_MT_cone_texels,
     menus.VIEW3D_MT_cone_islands,
     menus.VIEW3D_MT_cone_unwrap,
+    pie.VIEW3D_MT_cone_pie,
     *PANELS,
+    *UV_EDITOR_PANELS,
     VIEW3D_PT_cone_angles,
 )
 MODULES = (
@@ -113,6 +115,7 @@ MODULES = (
     redo,
     manual,
     presets,
+    pie,
 )
 
 

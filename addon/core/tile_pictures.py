@@ -6,8 +6,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-# Texels along a side of the image, where the number of tiles divides it.
-SIZE = 1024
+# Texels along a side of the image, where the number of tiles divides it; and at least along a side of a tile, that its
+# pattern is seen.
+SIZE, LEAST = 1024, {"CHECKER": 8, "ASYMMETRIC": 64}
 
 DARK, LIGHT = (0.30, 0.36, 0.42), (0.88, 0.87, 0.83)
 # Bars of the letter F in the asymmetric tile: left, bottom, right, top as fractions of the tile.
@@ -18,9 +19,13 @@ RIM_WIDTH, CORNER = 0.02, 0.12
 CORNERS = ((0.85, 0.20, 0.15), (0.95, 0.75, 0.10), (0.15, 0.55, 0.25), (0.15, 0.35, 0.80))
 
 
-def picture(pattern: str, tiles: int) -> NDArray[np.float32]:
-    """(s, s, 4) values from 0 to 1, bottom row first, showing tiles² tiles; s is SIZE or a little less."""
-    side = max(SIZE // tiles // 2 * 2, 2)
+def picture(pattern: str, tiles: int, repeated: float = 1.0) -> NDArray[np.float32]:
+    """(s, s, 4) values from 0 to 1, bottom row first, showing tiles² tiles; s is SIZE or a little less.
+
+    repeated: how often the image is seen side by side. It gets so many times less texels: where several are in one
+    pixel, and Blender's solid views take a single one, squares would become a moire.
+    """
+    side = max(int(SIZE / max(repeated, 1.0)) // tiles // 2 * 2, min(LEAST[pattern], SIZE // tiles // 2 * 2), 2)
     tile = {"CHECKER": _checker, "ASYMMETRIC": _asymmetric}[pattern](side)
     whole = np.tile(tile, (tiles, tiles, 1))
     if pattern == "ASYMMETRIC":

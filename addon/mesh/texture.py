@@ -21,8 +21,8 @@ class ConeUnwrapReplaced(bpy.types.PropertyGroup):
     added: bpy.props.BoolProperty()
 
 
-def make_material(pattern: str, tiles: int) -> bpy.types.Material:
-    """The material, created or changed to show this pattern.  pattern, tiles: as in `tile_pictures.picture`."""
+def make_material(pattern: str, tiles: int, repeated: float = 1.0) -> bpy.types.Material:
+    """The material, created or changed to show this pattern.  Arguments as in `tile_pictures.picture`."""
     material = find_material()
     if material is None:
         material = bpy.data.materials.new(TEXTURE)
@@ -37,7 +37,7 @@ def make_material(pattern: str, tiles: int) -> bpy.types.Material:
         tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
         tree.nodes.active = node
     node = material.node_tree.nodes.active
-    old, node.image = node.image, _make_image(pattern, tiles)
+    old, node.image = node.image, _make_image(pattern, tiles, repeated)
     if old is not None and not old.users:
         bpy.data.images.remove(old)
     return material
@@ -119,8 +119,8 @@ def _is_solid_view(space: bpy.types.Space | None) -> bool:
     return space is not None and space.type == "VIEW_3D" and space.shading.type == "SOLID"
 
 
-def _make_image(pattern: str, tiles: int) -> bpy.types.Image:
-    pixels = tile_pictures.picture(pattern, tiles)
+def _make_image(pattern: str, tiles: int, repeated: float) -> bpy.types.Image:
+    pixels = tile_pictures.picture(pattern, tiles, repeated)
     image = bpy.data.images.new(TEXTURE, pixels.shape[1], pixels.shape[0])
     image.pixels.foreach_set(pixels.ravel())
     # Packed, its pixels are saved with the file and restored by undo.

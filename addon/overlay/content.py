@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -36,8 +36,9 @@ CutSides = tuple[FloatArray, FloatArray]
 EdgeFaces = dict[tuple[int, int], list[int]]
 """The faces beside edges."""
 
-# Distance of the two lines of a cut from it, one on each side, relative to its mean edge length.
-SIDE_OFFSET = 0.12
+# Distance of the two lines of a cut from it, one on each side, relative to its mean edge length; and at most, as they
+# would float over large faces otherwise, relative to the diagonal of the box around all cuts.
+SIDE_OFFSET, MOST_OFFSET = 0.12, 0.006
 
 # Length of an arrow relative to the side of a square of its face's area, and of its head relative to the arrow.
 ARROW, HEAD = 0.6, 0.3
@@ -164,9 +165,10 @@ def cuts_content(
     """
     report = session.report()
     drawn = {} if drawn is None else drawn
+    most = _most_offset(session.mesh, session.paths)
     for path in session.paths:
         if path not in drawn:
-            drawn[path] = _sides_of(session.mesh, list(path))
+            drawn[path] = _sides_of(session.mesh, list(path), most)
     sides = [drawn[path] for path in session.paths]
     without = None if report is None else replace(report, paths=[])
     return replace(
@@ -203,17 +205,23 @@ def _cut_sides(mesh: MeshReader, paths: list[list[int]]) -> tuple[FloatArray, ND
     """Segments along both sides of every path; their paths; and their UVs."""
     if not paths:
         return np.empty((0, 2, 3), np.float32), np.empty(0, np.int32), np.empty((0, 2, 2), np.float32)
-    lines, uvs = zip(*(_sides_of(mesh, path) for path in paths), strict=True)
+    most = _most_offset(mesh, paths)
+    lines, uvs = zip(*(_sides_of(mesh, path, most) for path in paths), strict=True)
     numbers = np.repeat(np.arange(len(paths), dtype=np.int32), [len(segments) for segments in lines])
     return np.concatenate(lines), numbers, np.concatenate(uvs)
 
 
-def _sides_of(mesh: MeshReader, path: list[int]) -> CutSides:
-    """Segments along both sides of a path, offset into the adjacent faces, and their UVs."""
+def _most_offset(mesh: MeshReader, paths: Iterable[Sequence[int]]) -> float:
+    vertices = sorted({vertex for path in paths for vertex in path})
+    return MOST_OFFSET * float(np.linalg.norm(np.ptp(mesh.positions(vertices), axis=0))) if vertices else 0.0
+
+
+def _sides_of(mesh: MeshReader, path: list[int], most: float) -> CutSides:
+    """Segments along both sides of a path, offset by so much at most into the adjacent faces, and their UVs."""
     lines, uvs = [], []
     places = mesh.positions(path)
     steps = np.diff(places, axis=0)
-    offset = SIDE_OFFSET * np.linalg.norm(steps, axis=1).mean()
+    offset = min(SIDE_OFFSET * np.linalg.norm(steps, axis=1).mean(), most)
     for side in (1, -1):
         pairs = [pair[::side] for pair in pairwise(path)]
         inward = _unit(np.cross(mesh.side_normals(pairs), side * steps))

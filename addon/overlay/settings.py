@@ -40,11 +40,12 @@ class ConeUnwrapOverlay(bpy.types.PropertyGroup):
         name="Cones", description="Show cones, colored by their curvature", default=True, update=_redraw
     )
     angles: bpy.props.BoolProperty(
-        name="Angles", description="Show the angle of each cone", default=True, update=_redraw
+        name="Angles", description="Show the angle of each cone", default=False, update=_redraw
     )
     cuts: bpy.props.BoolProperty(
         name="Cuts",
-        description="Show both sides of every cut in the same color, on the mesh and in the UV editor",
+        description="Show both sides of every cut in the same color, on the mesh, also in Texture Paint, and in the UV "
+        "editor",
         default=True,
         update=_redraw,
     )

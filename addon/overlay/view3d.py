@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from itertools import pairwise
@@ -27,6 +27,9 @@ from .settings import ConeUnwrapOverlay, settings
 # How much nearer the overlay is drawn, relative to depth, as Blender does for wires; faces stay behind those.
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
+PAINTING = "PAINT_TEXTURE"
+
+Draw = Callable[[bpy.types.Object, ConeUnwrapOverlay, OverlayLook], None]
 
 # By session_uid of the mesh and name of the places in its content, for the view being drawn: (k, 3) their pixels and
 # depths in the region, and (k,) which of them are visible.
@@ -34,11 +37,14 @@ _seen: dict[tuple[int, str], tuple[NDArray[np.float32], NDArray[np.bool_]]] = {}
 
 
 def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Visible objects with meshes in edit mode, or else the selected ones; each mesh once in edit mode."""
+    """Visible objects with meshes in edit mode, the one that is painted, or else the selected ones; each mesh once in
+    edit mode."""
     if context.mode == "EDIT_MESH":
         objects = context.objects_in_mode_unique_data
     elif context.mode == "OBJECT":
         objects = [obj for obj in context.selected_objects if obj.type == "MESH"]
+    elif context.mode == PAINTING:
+        objects = [context.object]
     else:
         objects = []
     return [obj for obj in objects if obj.visible_get(viewport=context.space_data)]
@@ -54,6 +60,10 @@ def draw_in_scene() -> None:
     gpu.state.blend_set("ALPHA")
     try:
         _seen.clear()
+        if context.mode == PAINTING:
+            # Anything else would hide what is painted.
+            _draw_each(context, _draw_cuts, 1.0)
+            return
         for name, is_chosen in (("cone_places", chosen.cones), ("missed_places", chosen.up)):
             if is_chosen:
                 _find_seen(context, name, see_through=see_through)
@@ -63,21 +73,25 @@ def draw_in_scene() -> None:
             (_draw_directions, 1.0),
             (_draw_cones, 1.0),
         ):
-            with _brought_nearer(context.region_data, share):
-                for obj in shown_objects(context):
-                    with gpu.matrix.push_pop():
-                        gpu.matrix.multiply_matrix(obj.matrix_world)
-                        draw(obj, chosen, overlay_look())
+            _draw_each(context, draw, share)
     finally:
         gpu.state.depth_test_set("NONE")
         gpu.state.depth_mask_set(False)
         gpu.state.blend_set("NONE")
 
 
+def _draw_each(context: bpy.types.Context, draw: Draw, share: float) -> None:
+    with _brought_nearer(context.region_data, share):
+        for obj in shown_objects(context):
+            with gpu.matrix.push_pop():
+                gpu.matrix.multiply_matrix(obj.matrix_world)
+                draw(obj, settings(context), overlay_look())
+
+
 def draw_on_top() -> None:
     context = bpy.context
     chosen = settings(context)
-    if not (chosen.show and context.space_data.overlay.show_overlays):
+    if context.mode == PAINTING or not (chosen.show and context.space_data.overlay.show_overlays):
         return
     objects = shown_objects(context)
     gpu.state.blend_set("ALPHA")

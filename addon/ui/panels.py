@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar of the 3D view."""
+"""The sidebar of the 3D view, and that of the UV editor, which has most of it."""
 
 from __future__ import annotations
 
@@ -63,6 +63,31 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
         report = reports.current(active.data) if active is not None and active.type == "MESH" else None
         if report is not None:
             draw_wrapped(layout, context, tables.in_one_line(report))
+
+
+class VIEW3D_PT_cone_unwrap_islands(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Islands"
+    bl_order = 3
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.mode == "EDIT_MESH"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.operator_context = "INVOKE_DEFAULT"
+        for names in (("STRAIGHTEN", "RECTIFY", "GRID"), ("STITCH", "RIP")):
+            row = column.row(align=True)
+            for name in names:
+                row.operator(getattr(identifiers, name), text=name.title())
+        row = column.row(align=True)
+        for by, text in (("MODEL", "Upright"), ("EDGE", "By Edge")):
+            row.operator(identifiers.ORIENT, text=text).by = by
+        for sides in (("LEFT", "CENTER", "RIGHT"), ("TOP", "MIDDLE", "BOTTOM")):
+            row = column.row(align=True)
+            for side in sides:
+                row.operator(identifiers.ALIGN, text=side.title()).side = side
 
 
 class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):
@@ -251,6 +276,7 @@ class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):
 
 PANELS = (
     VIEW3D_PT_cone_unwrap,
+    VIEW3D_PT_cone_unwrap_islands,
     VIEW3D_PT_cone_unwrap_problems,
     VIEW3D_PT_cone_unwrap_cones,
     VIEW3D_PT_cone_unwrap_up,
@@ -260,4 +286,40 @@ PANELS = (
     VIEW3D_PT_cone_unwrap_distortion,
     VIEW3D_PT_cone_unwrap_texels,
     VIEW3D_PT_cone_unwrap_texture,
+)
+
+
+def _in_uv_editor(panel: type[bpy.types.Panel]) -> type[bpy.types.Panel]:
+    """The same panel in the sidebar of the UV editor."""
+
+    def poll(_cls: type[bpy.types.Panel], context: bpy.types.Context) -> bool:
+        own = getattr(panel, "poll", None)
+        space = context.space_data
+        return space is not None and space.show_uvedit and (own is None or own(context))
+
+    def name_of(idname: str) -> str:
+        return idname.replace("VIEW3D", "IMAGE")
+
+    members = {"bl_space_type": "IMAGE_EDITOR", "poll": classmethod(poll), "__doc__": panel.__doc__}
+    if hasattr(panel, "bl_parent_id"):
+        members["bl_parent_id"] = name_of(panel.bl_parent_id)
+    bases = (panel.__mro__[1], bpy.types.Panel)
+    kept = {name: value for name, value in vars(panel).items() if name in ("bl_label", "bl_order", "bl_options")}
+    drawn = {name: value for name, value in vars(panel).items() if name in ("draw", "draw_header")}
+    return type(name_of(panel.__name__), bases, {**kept, **drawn, **members})
+
+
+UV_EDITOR_PANELS = tuple(
+    map(
+        _in_uv_editor,
+        (
+            VIEW3D_PT_cone_unwrap,
+            VIEW3D_PT_cone_unwrap_islands,
+            VIEW3D_PT_cone_unwrap_problems,
+            VIEW3D_PT_cone_unwrap_quality,
+            VIEW3D_PT_cone_unwrap_seams,
+            VIEW3D_PT_cone_unwrap_overlay,
+            VIEW3D_PT_cone_unwrap_texels,
+        ),
+    )
 )

@@ -19,7 +19,15 @@ from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
-from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, CutsProperty, LatticeProperty, SeamsProperty
+from ..shared.properties import (
+    LATTICES,
+    SEAMS,
+    ConeGroupProperty,
+    CutsProperty,
+    LatticeProperty,
+    SeamsProperty,
+    max_stretch_property,
+)
 
 if TYPE_CHECKING:
     import lsgp
@@ -63,6 +71,7 @@ class MESH_OT_cone_place(
         step=1,
         precision=3,
     )
+    max_stretch: max_stretch_property()
     count: bpy.props.IntProperty(
         name="Count",
         description="Cones on each connected component, including those already marked",
@@ -96,7 +105,7 @@ class MESH_OT_cone_place(
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "automatic")
-        layout.prop(self, "target" if self.automatic else "count")
+        layout.prop(self, "max_stretch" if self.automatic else "count")
         layout.prop(self, "keep")
         layout.prop(self, "prefer_sharp")
         layout.prop(self, "symmetric")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Show Texture and Remove Texture."""
 
+from collections.abc import Iterable
+
 import bpy
 
 from ...core import identifiers
@@ -51,11 +53,9 @@ class UV_OT_cone_texture(bpy.types.Operator):
         return poll_meshes(cls, context)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        if not self.properties.is_property_set("tiles"):
-            found = [reports.current(obj.data) for obj in target_objects(context)]
-            # A tile of a seamless layout is one UV unit.
-            if any(report is not None and report.certificate is not None for report in found):
-                self.tiles = 1
+        # A tile of a seamless layout is one UV unit.
+        if not self.properties.is_property_set("tiles") and _repeated(target_objects(context)):
+            self.tiles = 1
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -67,7 +67,7 @@ class UV_OT_cone_texture(bpy.types.Operator):
         else:
             changed = objects
             if objects:
-                material = texture.make_material(self.pattern, self.tiles)
+                material = texture.make_material(self.pattern, self.tiles, _repeated(objects) or 1.0)
                 for obj in objects:
                     texture.show(obj, material)
                 texture.show_in_view(context, material)
@@ -77,3 +77,10 @@ class UV_OT_cone_texture(bpy.types.Operator):
         verb = "Removed the texture from" if self.clear else "Showing the texture on"
         done = [f"{verb} {counted(len(changed), 'mesh', 'meshes')}"] if changed else []
         return conclude(self, done, {}, failures)
+
+
+def _repeated(objects: Iterable[bpy.types.Object]) -> float:
+    """How many UV units the seamless layouts of objects are wide at most; 0 where none is seamless."""
+    found = [reports.current(obj.data) for obj in objects]
+    certificates = [report.certificate for report in found if report is not None and report.certificate is not None]
+    return max((certificate["tiles"] * certificate["cell"] for certificate in certificates), default=0.0)

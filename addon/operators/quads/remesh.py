@@ -129,7 +129,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         if context.object is None:
             layout.prop(self, "density_group")
         else:
-            layout.prop_search(self, "density_group", context.object, "vertex_groups")
+            layout.prop_search(self, "density_group", context.object, "vertex_groups", results_are_suggestions=True)
         self.draw_vertex_group(layout, context)
 
     def sources(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], Faces]:

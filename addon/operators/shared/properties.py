@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Properties that several operators have."""
 
+from typing import Any
+
 import bpy
 
 from ...core.choices import Choices, enum_items
@@ -38,6 +40,12 @@ BORDERS: Choices = {
         "Boundaries take the shape with the least distortion; cones with an angle are corners there",
     ),
     "STRAIGHT": ("straight", "Straight", "Boundaries run straight from cone to cone: a cylinder becomes a strip"),
+    "STRIPS": (
+        "strips",
+        "Strips",
+        "A tube of about the same girth all along, without marked cones and seams, becomes a straight strip; other "
+        "boundaries are free",
+    ),
 }
 LATTICES: Choices = {
     "SQUARE": (
@@ -68,6 +76,31 @@ LATTICES: Choices = {
 }
 
 
+def max_stretch_property() -> Any:
+    """The operator's target of L2 stretch, in percent."""
+
+    def percent(operator: Any) -> float:
+        return 100 * (operator.target - 1)
+
+    def set_percent(operator: Any, value: float) -> None:
+        operator.target = 1 + value / 100
+
+    return bpy.props.FloatProperty(
+        name="Max Stretch",
+        description="How much lengths may be off on the average of any connected component, as far as possible; less "
+        "takes more cones, and with them cuts",
+        min=0.1,
+        soft_max=50.0,
+        max=1000.0,
+        step=100,
+        precision=1,
+        subtype="PERCENTAGE",
+        get=percent,
+        set=set_percent,
+        options={"SKIP_SAVE"},
+    )
+
+
 class ConeGroupProperty:
     """Mix-in: the vertex group whose members are the cones."""
 
@@ -82,7 +115,8 @@ class ConeGroupProperty:
         if context.object is None:
             layout.prop(self, "vertex_group")
         else:
-            layout.prop_search(self, "vertex_group", context.object, "vertex_groups")
+            # It need not exist: that is no error.
+            layout.prop_search(self, "vertex_group", context.object, "vertex_groups", results_are_suggestions=True)
 
 
 class SeamsProperty:

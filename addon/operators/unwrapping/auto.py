@@ -36,7 +36,7 @@ from ...mesh.targets import active_object
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.packing import EFFORTS, PackingProperties, with_surroundings
-from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
+from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty, max_stretch_property
 from ..shared.views import show_layouts
 from .direction_choices import chosen_direction
 from .features import PLACES, FeatureProperties
@@ -116,7 +116,7 @@ class UV_OT_cone_auto_unwrap(
         soft_max=64,
     )
     target: bpy.props.FloatProperty(
-        name="Max Stretch",
+        name="Stretch",
         description="The stretch (L2, 1 is none, 1.05 is 5 %) not to exceed on any connected component, as far as "
         "possible; less takes more cones, and with them cuts",
         default=USUAL_TARGET,
@@ -125,6 +125,7 @@ class UV_OT_cone_auto_unwrap(
         step=1,
         precision=3,
     )
+    max_stretch: max_stretch_property()
     udim: bpy.props.IntProperty(
         name="UDIM Tiles",
         description="Spread the islands over this many UDIM tiles, 1001 and following, so that they become as large "
@@ -220,7 +221,9 @@ class UV_OT_cone_auto_unwrap(
             keep_settings(obj, chosen)
 
     def _names(self) -> list[str]:
-        return [prop.identifier for prop in self.properties.bl_rna.properties if not prop.is_readonly]
+        # The stretch in percent is another view of the target.
+        every = self.properties.bl_rna.properties
+        return [prop.identifier for prop in every if not prop.is_readonly and prop.identifier != "max_stretch"]
 
     def _take_defaults(self, *, is_redone: bool) -> None:
         """Take from the preferences what neither the caller says nor the artist chose since Blender was started.
@@ -254,7 +257,7 @@ class UV_OT_cone_auto_unwrap(
         layout.prop(self, "cuts")
         layout.prop(self, "count", text="Cones" if self.count else "Cones (Auto)")
         if not self.count:
-            layout.prop(self, "target")
+            layout.prop(self, "max_stretch")
         if self.preset == "TILE":
             self.draw_tile_size(layout, context)
         else:

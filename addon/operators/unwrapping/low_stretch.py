@@ -60,5 +60,5 @@ class LowStretchProperties:
         if context.object is None:
             column.prop(self, "weight_group")
         else:
-            column.prop_search(self, "weight_group", context.object, "vertex_groups")
+            column.prop_search(self, "weight_group", context.object, "vertex_groups", results_are_suggestions=True)
         column.prop(self, "weight_factor")

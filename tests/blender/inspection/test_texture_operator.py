@@ -172,3 +172,23 @@ def test_a_checker_has_two_squares_a_tile_and_looks_the_same_turned_by_half():
         changes = np.abs(np.diff(picture[0, :, 0])) > 0.1
         assert changes.sum() == 2 * tiles - 1
         np.testing.assert_array_equal(picture, picture[::-1, ::-1])
+
+
+@pytest.mark.parametrize("repeated", [1, 7, 96, 5000])
+def test_a_texture_that_is_seen_many_times_has_about_as_many_texels_as_the_screen(repeated):
+    for pattern, least in tile_pictures.LEAST.items():
+        picture = tile_pictures.picture(pattern, 1, repeated)
+        assert len(picture) == pytest.approx(max(1024 / repeated, least), abs=2)
+        changes = np.abs(np.diff(picture[0, :, 0])) > 0.1
+        assert pattern != "CHECKER" or changes.sum() == 1
+
+
+def test_a_seamless_layout_gets_fewer_texels_the_more_tiles_it_has():
+    sizes = []
+    for tiles in (4, 64):
+        cube = add_cone_cube()
+        bpy.ops.uv.cone_unwrap(seamless=True, tile_fit="TILES", tiles=tiles)
+        bpy.ops.uv.cone_texture("INVOKE_DEFAULT", pattern="CHECKER")
+        sizes.append(cube.material_slots[0].material.node_tree.nodes.active.image.size[0])
+        bpy.data.objects.remove(cube)
+    assert sizes[0] >= 4 * sizes[1]

@@ -49,7 +49,7 @@ class RecordingLayout:
     def prop_enum(self, _owner, name, _value):
         self.drawn[name] = self.active
 
-    def prop_search(self, _owner, name, *_where):
+    def prop_search(self, _owner, name, *_where, **_options):
         self.drawn[name] = self.active
 
 
@@ -132,9 +132,9 @@ def test_of_auto_unwrap_a_beginner_sees_the_preset_cuts_cones_and_the_square():
 
     always = {"preset", "cuts", "count", "direction"}
     square = {"texture_size", "margin", "scale", "udim", "effort"}
-    assert at_first() == at_first(preset="BAKE") == always | square | {"target", "stack"}
-    assert at_first(scale="DENSITY") == always | square | {"target", "density"}
-    assert at_first(preset="TILE") == always | {"target", "tile_fit"}
+    assert at_first() == at_first(preset="BAKE") == always | square | {"max_stretch", "stack"}
+    assert at_first(scale="DENSITY") == always | square | {"max_stretch", "density"}
+    assert at_first(preset="TILE") == always | {"max_stretch", "tile_fit"}
     # A number of cones leaves no choice of the stretch.
     assert at_first(preset="TILE", count=8) == always | {"tile_fit"}
 

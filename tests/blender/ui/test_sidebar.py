@@ -69,6 +69,29 @@ def test_panels_come_with_what_they_tell():
     assert shown() == ALWAYS | {"Quality", "Seam Certificate"}
 
 
+def test_the_uv_editor_has_the_panels_of_the_3d_view_that_concern_its_map():
+    ours = {panel.bl_label: panel for panel in panels.PANELS}
+    for panel in panels.UV_EDITOR_PANELS:
+        original = ours[panel.bl_label]
+        assert panel.bl_idname if hasattr(panel, "bl_idname") else panel.__name__.startswith("IMAGE_PT_")
+        assert (panel.bl_space_type, panel.bl_region_type, panel.bl_category) == ("IMAGE_EDITOR", "UI", "Cone Unwrap")
+        assert panel.draw is original.draw
+        # Without a UV editor.
+        assert not is_shown(panel)
+    wanted = {"Cone Unwrap", "Islands", "Problems", "Quality", "Seam Certificate", "Overlay", "Texel Density"}
+    assert {panel.bl_label for panel in panels.UV_EDITOR_PANELS} == wanted
+
+
+def test_islands_have_their_tools_in_edit_mode():
+    cube = add_cone_cube()
+    assert "Islands" not in shown()
+    edit(cube)
+    assert "Islands" in shown()
+    _, buttons = drawn(panels.VIEW3D_PT_cone_unwrap_islands)
+    verbs = ("straighten", "rectify", "grid", "stitch", "rip", "orient", "orient", *["align"] * 6)
+    assert [name for name, _ in buttons] == [f"uv.cone_{verb}" for verb in verbs]
+
+
 def test_only_the_first_panel_and_problems_are_open_at_first():
     closed = {panel.bl_label for panel in panels.PANELS if "DEFAULT_CLOSED" in getattr(panel, "bl_options", ())}
     assert {panel.bl_label for panel in panels.PANELS} - closed == {"Cone Unwrap", "Problems"}
@@ -174,6 +197,6 @@ def test_every_panel_draws():
     bpy.ops.uv.cone_texture()
     changes.mark_changed(bpy.context.object.data)
     seen = {panel.bl_label: drawn(panel) for panel in panels.PANELS}
-    assert seen.pop("Problems") is None
+    assert seen.pop("Problems") is seen.pop("Islands") is None
     assert all(texts or buttons for texts, buttons in seen.values())
     assert [name for name, button in seen["Texture"][1] if getattr(button, "clear", False)] == ["uv.cone_texture"]
