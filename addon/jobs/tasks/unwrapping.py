@@ -41,11 +41,13 @@ USUAL_TARGET = 1.05
 """The stretch that cones are placed for where nobody chooses another."""
 # Of an island: below, nobody sees it.
 _SEEN_STRETCH = 1.1
-# Of the area of all objects, of those whose automatic tiles may be smaller than elsewhere, and by how much untold.
+# Of the area of all objects, of those that have no say in the size of automatic tiles.
 _SMALL_SHARE = 0.05
-# Along the longest layout, up to which no object's are smaller.
-_EVEN_TILES = 256
+# How much smaller an object's automatic tiles may be than elsewhere without being told, and without larger ones being
+# tried where it has cuts that they would have to fit: it takes long to find that they do not.
 _MOST_UNSAID_SCALE = 2.0
+# Times the stretch that an object has with tiles of its own size, to have those that the others have.
+_PRICE_OF_ONE_SIZE = 1.1
 # Of the chosen size, by which tiles have to differ from it to be told.
 _NOTICEABLE = 0.1
 
@@ -174,8 +176,9 @@ def unwrap_all(
 ) -> list[Unwrapped | Exception]:
     """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled.
 
-    Automatic tiles of seamless layouts have one size in the world but for density weights: the smallest that a task
-    requires, except on small objects that require even smaller ones.
+    Automatic tiles of seamless layouts have one size in the world but for density weights: as large as all
+    but a small part of the area permits; objects there that have no layout with it, or are stretched too much, keep
+    smaller ones.
     solve: in place of `unwrap`.
     """
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
@@ -186,26 +189,40 @@ def unwrap_all(
     # What is scaled to nothing has no size.
     found = {i: each for i, each in enumerate(outcomes) if isinstance(each, Unwrapped) and _tile_size(each) > 0}
     common = _common_tile_size(list(found.values()))
-    larger = [i for i, each in found.items() if _tile_size(each) > common]
-    redone = solve_all([_with_tile_size(tasks[i], common) for i in larger], solve, share_of(progress, 0.5, 1.0))
-    for i, each in zip(larger, redone, strict=True):
-        outcomes[i] = each
-    for i, each in found.items():
-        factor = common / _tile_size(each)
+    others = [i for i, each in found.items() if _may_have_tiles_of(each, common)]
+    redone = solve_all([_with_tile_size(tasks[i], common) for i in others], solve, share_of(progress, 0.5, 1.0))
+    for i, each in zip(others, redone, strict=True):
+        if _tile_size(found[i]) > common or _is_hardly_worse(each, found[i]):
+            outcomes[i] = each
+    for i in found:
+        each = outcomes[i]
+        factor = common / _tile_size(each) if isinstance(each, Unwrapped) else 1.0
         if factor > _MOST_UNSAID_SCALE:
             outcomes[i] = _with_smaller_tiles(each, factor)
     return outcomes
 
 
 def _common_tile_size(unwrapped: Sequence[Unwrapped]) -> float:
-    """The smallest that an object requires, except where that is small and all others would get very many tiles."""
+    """The largest one that suits all but a small part of the area."""
     if not unwrapped:
         return 0.0
     by_size = sorted(unwrapped, key=_tile_size)
     areas = np.cumsum([size_in_texels(each.region) ** 2 for each in by_size])
-    common = _tile_size(by_size[np.argmax(~(areas <= _SMALL_SHARE * areas[-1]))])
-    longest = max(each.result.seamless.tiles * _tile_size(each) for each in by_size)
-    return min([common, *(size for size in map(_tile_size, by_size) if longest <= _EVEN_TILES * size)])
+    return _tile_size(by_size[np.argmax(~(areas <= _SMALL_SHARE * areas[-1]))])
+
+
+def _may_have_tiles_of(unwrapped: Unwrapped, size: float) -> bool:
+    """Whether it has others, and is worth being tried with those."""
+    larger = size / _tile_size(unwrapped)
+    return larger != 1 and (larger <= _MOST_UNSAID_SCALE or not len(unwrapped.result.seamless.cut_errors))
+
+
+def _is_hardly_worse(one: Unwrapped | Exception, than: Unwrapped) -> bool:
+    if not isinstance(one, Unwrapped) or len(one.result.flipped) > len(than.result.flipped):
+        return False
+    if not one.result.solved[than.result.solved].all():
+        return False
+    return one.result.distortion.l2_stretch <= _PRICE_OF_ONE_SIZE * than.result.distortion.l2_stretch
 
 
 def _with_smaller_tiles(unwrapped: Unwrapped, factor: float) -> Unwrapped:

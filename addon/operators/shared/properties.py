@@ -76,6 +76,10 @@ LATTICES: Choices = {
 }
 
 
+# Where Blender has the option.
+NOT_IN_PRESETS = {"SKIP_PRESET"} if "is_skip_preset" in bpy.types.Property.bl_rna.properties else set()
+
+
 def max_stretch_property() -> Any:
     """The operator's target of L2 stretch, in percent."""
 
@@ -97,7 +101,7 @@ def max_stretch_property() -> Any:
         subtype="PERCENTAGE",
         get=percent,
         set=set_percent,
-        options={"SKIP_SAVE"},
+        options={"SKIP_SAVE", *NOT_IN_PRESETS},
     )
 
 

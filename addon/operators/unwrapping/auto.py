@@ -36,7 +36,14 @@ from ...mesh.targets import active_object
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.packing import EFFORTS, PackingProperties, with_surroundings
-from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty, max_stretch_property
+from ..shared.properties import (
+    NOT_IN_PRESETS,
+    SEAMS,
+    ConeGroupProperty,
+    CutsProperty,
+    SeamsProperty,
+    max_stretch_property,
+)
 from ..shared.views import show_layouts
 from .direction_choices import chosen_direction
 from .features import PLACES, FeatureProperties
@@ -61,8 +68,7 @@ STACKS: Choices = {
     ),
 }
 
-# Not for presets either, where Blender has the option.
-_UNSEEN = {"HIDDEN", "SKIP_PRESET"} if "is_skip_preset" in bpy.types.Property.bl_rna.properties else {"HIDDEN"}
+_UNSEEN = {"HIDDEN", *NOT_IN_PRESETS}
 
 
 # Properties that are factors of a weight of `lsgp.Weights`.
@@ -339,6 +345,7 @@ class UV_OT_cone_auto_unwrap(
         if self.preset == "TILE":
             # Such layouts are as many units wide as there are tiles.
             show_layouts(bpy.context)
+            return [f"{map_summary(unwrapped)}, {_size_of_tiles(unwrapped)}" for _, _, unwrapped in solved]
         return [map_summary(unwrapped) for _, _, unwrapped in solved]
 
     def _weights(self) -> lsgp.Weights:
@@ -374,3 +381,10 @@ class UV_OT_cone_auto_unwrap(
             tiles = self.tile_size_options() | {"feature_places": PLACES[self.straight_places][0]}
             options = replace(options, seamless=replace(options.seamless, **tiles))
         return options
+
+
+def _size_of_tiles(unwrapped: Unwrapped) -> str:
+    """In the world, as "tiles of 0.25 m"."""
+    unit = length_unit(bpy.context.scene)
+    size = unwrapped.result.seamless.tile_size * unwrapped.region.object_scale / unit.size
+    return f"tiles of {size:.3g} {unit.name}"

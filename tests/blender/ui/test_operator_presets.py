@@ -46,5 +46,6 @@ def test_a_preset_does_not_depend_on_what_was_set_before(preset):
         assert after[-1] != before
     assert after[0] == after[1]
     properties = bpy.context.active_operator.properties
-    set_by_it = {name for name in after[0] if properties.is_property_set(name)}
+    # What is another view of one of them always counts as set.
+    set_by_it = {name for name in after[0] if properties.is_property_set(name)} - {"max_stretch"}
     assert set_by_it == set(re.findall(r"^op\.(\w+) = ", (FOLDER / preset).read_text(), re.MULTILINE))

@@ -297,6 +297,32 @@ def test_small_objects_do_not_make_the_tiles_of_others_small(reports):
     assert UvMap(small).tile_error() == UvMap(large).tile_error() == 0
 
 
+def test_small_objects_without_cuts_have_tiles_as_large_as_others_and_the_layout_stays_small(reports):
+    ball, plates = add_ball("Ball"), [add_grid(f"Plate {number}") for number in range(3)]
+    for plate in plates:
+        plate.scale = 0.02, 0.02, 0.02
+    bpy.context.view_layer.update()
+    bpy.ops.object.select_all(action="DESELECT")
+    ball.select_set(True)
+    unwrap(preset="TILE")
+    alone = tiles_along_a_unit(ball)
+    for plate in plates:
+        plate.select_set(True)
+    reports()
+    unwrap(preset="TILE")
+    said = reports()
+    assert "times smaller" not in said
+    density = [tiles_along_a_unit(obj) for obj in (ball, *plates)]
+    assert density == pytest.approx([alone] * 4, rel=0.15)
+    sizes = [float(size) for size in re.findall(r"tiles of ([\d.]+) m", said)]
+    assert sizes == pytest.approx([1 / alone] * 4, rel=0.15)
+    low, high = (np.array([getattr(UvMap(obj).uv, side)(axis=0) for obj in (ball, *plates)]) for side in ("min", "max"))
+    # It begins at the origin.
+    assert (low.min(axis=0) >= 0).all()
+    assert (low.min(axis=0) < 1).all()
+    assert (high.max(axis=0) < 4 * np.ptp(UvMap(ball).uv, axis=0).max()).all()
+
+
 def test_what_is_scaled_to_nothing_does_not_decide_the_size_of_tiles():
     nothing, small, large = add_ball("Nothing"), add_ball("Small"), add_ball("Large")
     nothing.scale, large.scale = (0, 0, 0), (2, 2, 2)
