@@ -146,7 +146,8 @@ Result map_components(const KnownSurface& known, const MapRequest& request, cons
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (!mapped.maps[i]) continue;
     FoundMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
-    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), mapped.results[i]->map);
+    MapResult& known = *mapped.results[i];
+    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), {known.map, known.divided});
   }
   assembly.require_any();
   assembly.finish(cones, work.topology.duplicates, request.search);

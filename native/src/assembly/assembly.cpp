@@ -72,42 +72,56 @@ Assembly::Assembly(const Surface& surface, const PerComponent<Component>& compon
   }
 }
 
+void Assembly::divide(const OpenedSurface& opened, const ComponentTask& task, ComponentMap& map) {
+  const MetricMesh surface{opened.mesh, opened.geometry};
+  const PerHalfedge<char>& seam = opened.mesh.seam;
+  const SplitTask splitting{seam, task.cones.mirroring};
+  const bool keeps_islands =
+      options_.compact == Compactness::off || !map.pins.empty() || std::find(seam.begin(), seam.end(), 1) != seam.end();
+  if (!keeps_islands) {
+    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(surface, map), options_.compact};
+    if (compact_islands(opened, splitting.mirroring, square, map)) restore_symmetry(opened, splitting, square, map);
+  }
+  if (result_.seamless || !(map.natural_l2 > 0)) return;
+  const ProgressMonitor::Stage stage(monitor_, "relax");
+  const StretchOptions stretch{options_.stretch, task.importance};
+  const auto advance = [this] { monitor_.advance(0); };
+  if (task.is_strip && !opened.mesh.has_features()) {
+    straighten_islands({with_marked_sides(opened.mesh, map), opened.geometry}, SideKinds::marked, stretch, advance,
+                       map);
+    map.release_reasons.clear();
+  } else {
+    const bool is_plain = !options_.straighten || opened.mesh.closed();
+    const SideKinds kinds = is_plain ? SideKinds::marked : SideKinds::with_creases;
+    straighten_islands(surface, kinds, stretch, advance, map);
+  }
+}
+
 void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, FoundMap mapped,
-                   std::optional<FoundMap>& split) {
+                   KnownMaps known) {
   const Component& component = components_[component_index];
   ComponentMap& map = mapped.map;
   const OpenedSurface opened{{component.mesh, geometry}, component.mesh.seam};
   const SplitTask splitting{component.mesh.seam, task.cones.mirroring};
+  const bool may_split = options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2;
   // A seamless layout was split before its islands were put onto the lattice; pinned ones keep their position.
-  if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2 && !split) {
+  if (may_split && !known.split) {
     try {
       split_map(opened, splitting, monitor_, map);
-      split = mapped;
+      known.split = mapped;
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
     }
   }
-  const PerHalfedge<char>& seam = component.mesh.seam;
-  const bool keeps_islands =
-      options_.compact == Compactness::off || !map.pins.empty() || std::find(seam.begin(), seam.end(), 1) != seam.end();
-  if (!keeps_islands) {
-    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface({component.mesh, geometry}, map),
-                              options_.compact};
-    if (compact_islands(opened, splitting.mirroring, square, map)) restore_symmetry(opened, splitting, square, map);
-  }
-  if (!result_.seamless && map.natural_l2 > 0) {
-    const ProgressMonitor::Stage stage(monitor_, "relax");
-    const StretchOptions stretch{options_.stretch, task.importance};
-    const auto advance = [this] { monitor_.advance(0); };
-    if (task.is_strip && !component.mesh.has_features()) {
-      straighten_islands({with_marked_sides(component.mesh, map), geometry}, SideKinds::marked, stretch, advance, map);
-      map.release_reasons.clear();
-    } else {
-      const bool is_plain = !options_.straighten || component.mesh.closed();
-      const SideKinds kinds = is_plain ? SideKinds::marked : SideKinds::with_creases;
-      straighten_islands({component.mesh, geometry}, kinds, stretch, advance, map);
-    }
+  const double square_area = surface_area_ / options_.square_share;
+  const std::optional<DividedMap>& divided = known.divided;
+  if (may_split && divided && divided->compact == options_.compact && divided->square_area == square_area) {
+    map = divided->map;
+  } else {
+    divide(opened, task, map);
+    // Straight sides take long.
+    if (may_split && map.natural_l2 > 0) known.divided = DividedMap{map, options_.compact, square_area};
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, mapped.findings, result_.warnings);

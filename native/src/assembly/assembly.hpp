@@ -10,6 +10,7 @@
 #include "assembly/one_sided_cuts.hpp"
 #include "assembly/report_defects.hpp"
 #include "base/array.hpp"
+#include "division/face_graph.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
 #include "plane/layout.hpp"
@@ -25,10 +26,16 @@ class Assembly {
   Assembly(const Surface& surface, const PerComponent<Component>& components, const Options& options,
            ProgressMonitor& monitor, Result& result);
 
-  // task: must outlive this object.  split: whether the map is split already; where it is not, it is kept there once it
-  // is.  A component whose map cannot be split is left out, with the findings about its map.
+  // What is known of a map, or found, for other layouts of it.
+  struct KnownMaps {
+    std::optional<FoundMap>& split;      // none: it is not split yet
+    std::optional<DividedMap>& divided;  // of the split one; none yet
+  };
+
+  // task: must outlive this object.  A component whose map cannot be split is left out, with the findings about its
+  // map.
   void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, FoundMap mapped,
-           std::optional<FoundMap>& split);
+           KnownMaps known);
 
   // Reports components that were left out; if there are no others, rethrows the first error.
   void require_any();
@@ -49,6 +56,9 @@ class Assembly {
     bool is_in_place = false;       // its islands are not to be arranged
     Eigen::Index first_corner = 0;  // in the layout
   };
+
+  // Divides the islands of a map so that they fill the square, and straightens their sides.
+  void divide(const OpenedSurface& opened, const ComponentTask& task, ComponentMap& map);
 
   // Writes the position of every corner to the result and to `layout_`.
   void place(const Array<Similarity>& placement);

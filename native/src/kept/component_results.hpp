@@ -20,6 +20,7 @@ namespace lsgp {
 
 struct MapResult {
   std::optional<FoundMap> map;                // before it is put onto a lattice, or after overlaps are split; none yet
+  std::optional<DividedMap> divided;          // after that; none yet
   std::optional<FeatureAlignment> alignment;  // of a seamless layout
 };
 

@@ -48,6 +48,14 @@ struct FoundMap {
   std::size_t defects() const { return map.validity.defects(); }
 };
 
+// A map after its islands were divided for a square of that area, as far as `compact` says, and their sides
+// straightened.
+struct DividedMap {
+  ComponentMap map;
+  Compactness compact;
+  double square_area;
+};
+
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
 void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
