@@ -26,28 +26,29 @@ enum class Preset {
 // What the parts of a map's quality are worth in a choice, in hundredths of L2 stretch. A larger weight is obeyed at
 // the cost of the others, 0 is no wish at all.
 struct Weights {
-  double islands = 0.4;   // each one; a tenth of them where there are more than ten
-  double cuts = 0.3;      // those as long as the square root of the surface's area
-  double borders = 0.3;   // the same at creases, across which the texture does not run on
-  double cones = 0.1;     // each one, around which it turns; on a component by the square root of its share of the area
-  double square = 1.2;    // as much of the texture as islands fill, left empty
-  double strips = 5.0;    // that tubes have no cones, so that they are straight strips; by area
+  double islands = 0.4;  // each one; a tenth of them where there are more than ten
+  double cuts = 0.3;     // those as long as the square root of the surface's area; times their cost where it is above 1
+  double borders = 0.3;  // the same at creases, across which the texture does not run on
+  double cones = 0.1;    // each one, around which it turns; on a component by the square root of its share of the area
+  double square = 1.2;   // as much of the texture as islands fill, left empty
+  double strips = 5.0;   // that tubes have no cones, so that they are straight strips; by area
   double symmetry = 1.0;  // that cuts run alike on both sides of a mirror plane; half of it, that cones do
 };
 
 // What came out of a map. Lengths in square roots of the surface's area.
 struct Quality {
-  Index left_out = 0;     // triangles without a map
-  Index defects = 0;      // flipped and overlapping triangles, and wrong angle sums
-  double stretch = 0;     // the excess of L2 stretch over 1, in hundredths
-  double islands = 0;     // their number
-  double cuts = 0;        // their length
-  double borders = 0;     // theirs
-  double cones = 0;       // their number, on several components times the square roots of their shares of the area
-  double empty = 0;       // the area of the texture that is left empty, as a multiple of that which is filled
-  double bent_tubes = 0;  // the share of the area in tubes that have cones
-  double asymmetry = 0;   // 0.5: only cones are alike on both sides of mirror planes; 1: nothing is; by area
-  double on_lattice = 0;  // what features off the lattice and small tiles cost, in hundredths of L2 stretch
+  Index left_out = 0;      // triangles without a map
+  Index defects = 0;       // flipped and overlapping triangles, and wrong angle sums
+  double stretch = 0;      // the excess of L2 stretch over 1, in hundredths
+  double islands = 0;      // their number
+  double cuts = 0;         // their length
+  double costly_cuts = 0;  // what cuts cost beyond their length, by cut_costs above 1 and above those of cheap edges
+  double borders = 0;      // theirs
+  double cones = 0;        // their number, on several components times the square roots of their shares of the area
+  double empty = 0;        // the area of the texture that is left empty, as a multiple of that which is filled
+  double bent_tubes = 0;   // the share of the area in tubes that have cones
+  double asymmetry = 0;    // 0.5: only cones are alike on both sides of mirror planes; 1: nothing is; by area
+  double on_lattice = 0;   // what features off the lattice and small tiles cost, in hundredths of L2 stretch
 };
 
 // In hundredths of L2 stretch, but for what is left out and defects, which nothing outweighs.
@@ -86,7 +87,7 @@ struct AutoUnwrapOptions {
   // and those for whose margins there is no room.
   bool pack = true;
   std::optional<PackingEffort> effort;  // none: that of the preset
-  std::optional<double> margin;  // none: usual_margin
+  std::optional<double> margin;         // none: usual_margin
   // After so many the best map made until then is the result, and TIME_LIMIT says so.
   std::optional<double> seconds;
 };

@@ -248,7 +248,7 @@ def add_cut_options(command: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action=Reads,
         help='lines "a b cost": cost per length, 0 to 1e6, of a cut along the edge between two vertices, counted from '
-        "0, in place of that by --cuts, which is 0.01 to 1.1; or one number for each vertex, from 0, which attracts "
+        "0, in place of that by --cuts, which is 0.01 to 30; or one number for each vertex, from 0, which attracts "
         "cuts, to 1, which repels them; or the same as [[a, b, cost], ...] or [number, ...]",
     )
 

@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double dearest = 1.5;                           // of the cuts without symmetry
+constexpr double longest = 0.5;                           // by how much of the length of cuts without symmetry
 constexpr double unmatched = 1.5;                         // factor of edges whose mirror image is no edge
 constexpr double of_designed = 1e-7, of_corridor = 1e-4;  // factors of edges where mirrored cuts are wanted
 constexpr double corridor = 1.5;                          // mean edge lengths to either side of a cut's image
@@ -268,21 +268,38 @@ CutGraph MirroredCuts::complete(const CutGraph& half) const {
   return task_.mesh.genus > 0 ? along(cuts) : cuts;
 }
 
+double length_of(const MetricMesh& surface, const CutGraph& cuts) {
+  double out = 0;
+  for (const Cut& cut : cuts.cuts) {
+    for (const Index h : cut.halfedges) out += surface.geometry.length[h];
+  }
+  return out;
+}
+
+// Of cuts, those that cost more than others as many times longer.
+double seen_length(const MetricMesh& surface, const CutGraph& cuts) {
+  double out = 0;
+  for (const Cut& cut : cuts.cuts) {
+    for (const Index h : cut.halfedges) out += std::max(surface.geometry.length[h], cut_cost(surface, h));
+  }
+  return out;
+}
+
 }  // namespace
 
 CutGraph connect_symmetrically(const CutTask& task, const Mirroring& mirroring) {
   CutGraph usual = connect_cones(task, task.interior_cones, task.uncut);
   if (usual.cuts.empty() || !are_mirrored(mirroring, task.interior_cones)) return usual;
-  const double most = dearest * cost_of(task, usual);
+  const double most = seen_length(task, usual) + longest * length_of(task, usual);
   try {
     const MirroredCuts mirrored(task, mirroring);
     const CutGraph free_half = mirrored.free_half();
     if (const auto half = mirrored.half_with_trunk(free_half)) {
       CutGraph cuts = mirrored.complete(*half);
-      if (cost_of(task, cuts) <= most) return cuts;
+      if (seen_length(task, cuts) <= most) return cuts;
     }
     CutGraph cuts = mirrored.complete(free_half);
-    if (cost_of(task, cuts) <= most) return cuts;
+    if (seen_length(task, cuts) <= most) return cuts;
   } catch (const Error& error) {
     if (error.code() != Code::cuts_blocked) throw;
   }

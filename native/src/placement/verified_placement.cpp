@@ -6,6 +6,9 @@
 #include <iterator>
 #include <utility>
 
+#include "base/lower_quartile.hpp"
+#include "cut/cut_graph.hpp"
+
 namespace lsgp {
 
 namespace {
@@ -36,7 +39,6 @@ constexpr int most_enlargements = 6;
 constexpr double justified_l2 = 1.01;  // of a map that justifies a cone at every rounded corner
 constexpr double usual_l2 = 1.05;      // of a map that does not justify more cones than any surface may have
 constexpr double far_from_target = 2;  // of the stretch above 1: other stages are tried where angles are rounded
-constexpr double much_fewer = 0.8;     // of those at cheap sites: so few at any sites are preferred
 
 // Whether the first choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
@@ -202,22 +204,37 @@ ConeChoice VerifiedPlacement::choose(std::optional<AutomaticCones>& automatic) {
   return automatic->reach(chooser_.options().target);
 }
 
-// Cones that cuts reach cheaply, if these stretch no more than others and are not many more.
+// Among cones within the target that are placed with prices of several weights, those that cost least.
 ConeChoice VerifiedPlacement::choose_where_cheap(std::optional<AutomaticCones>& automatic) {
-  ConeChoice anywhere = choose(automatic);
-  if (!chooser_.has_prices()) return anywhere;
-  const double most_l2 = std::max(chooser_.options().target, anywhere.predicted_l2);
+  ConeChoice best = choose(automatic);
+  if (!chooser_.has_prices() || !best.is_possible()) return best;
+  const double most_l2 = std::max(chooser_.options().target, best.predicted_l2);
+  double least = cost(best), weight_of_best = 0;
   for (const double weight : price_weights) {
     chooser_.weigh_prices(weight);
     std::optional<AutomaticCones> growth;
     ConeChoice cheap = choose(growth);
-    const auto count = [](const ConeChoice& choice) { return static_cast<double>(choice.vertices.size()); };
-    if (cheap.predicted_l2 > most_l2 || much_fewer * count(cheap) > count(anywhere)) continue;
+    if (cheap.predicted_l2 > most_l2) continue;
+    const double own = cost(cheap);
+    if (own >= least) continue;
+    least = own;
+    weight_of_best = weight;
+    best = std::move(cheap);
     if (growth) automatic.emplace(std::move(*growth));
-    return cheap;
   }
-  chooser_.weigh_prices(0);
-  return anywhere;
+  chooser_.weigh_prices(weight_of_best);
+  return best;
+}
+
+// Of the cuts that join cones by what they cost, in square roots of the area, and of the cones as cuts.
+double VerifiedPlacement::cost(const ConeChoice& choice) const {
+  constexpr double cone_as_cut = 1.0 / 3;  // Weights.cones to Weights.cuts
+  const PlacementTask& task = chooser_.task();
+  const PerLoop<char> none_uncut(task.mesh.boundary_loops.size(), 0);
+  const CutGraph cuts = connect_cones(task, inside_only(task.mesh, choice.vertices), none_uncut);
+  const double usual = std::max(1.0, lower_quartile(task.mesh.cut_factor));
+  return cost_of(task, cuts) / (usual * std::sqrt(task.geometry.total_area)) +
+         cone_as_cut * static_cast<double>(choice.vertices.size());
 }
 
 // Adds cones where the map itself is stretched, as long as each addition reduces the stretch to this share.

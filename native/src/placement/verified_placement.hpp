@@ -54,6 +54,7 @@ class VerifiedPlacement {
   bool is_worth_repairing(const VerifiedChoice& choice) const;
   VerifiedChoice place_as_asked();
   ConeChoice choose(std::optional<AutomaticCones>& automatic);
+  double cost(const ConeChoice& choice) const;
   ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);

@@ -5,14 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "base/lower_quartile.hpp"
 #include "base/union_find.hpp"
+#include "cut/cut_cost.hpp"
 #include "cut/shortest_paths.hpp"
 
 namespace lsgp {
 
 namespace {
 
-constexpr std::size_t edges_a_cheap_one = 4;  // one edge in so many is cheap
 constexpr double unreached = std::numeric_limits<double>::infinity();
 
 double factor_of(const HalfedgeMesh& mesh, Index h) { return mesh.seam[h] ? 0 : mesh.cut_factor[h]; }
@@ -50,8 +51,7 @@ Eigen::VectorXd vertex_prices(const MetricMesh& surface) {
   if (edges.empty()) return out;
   Array<double> factors;
   for (const Index h : edges) factors.push_back(factor_of(mesh, h));
-  std::sort(factors.begin(), factors.end());
-  const double cheap = factors[(factors.size() - 1) / edges_a_cheap_one], dearest = factors.back();
+  const double cheap = lower_quartile(factors), dearest = *std::max_element(factors.begin(), factors.end());
   if (!(cheap < dearest)) return out;
   const PathStarts starts = largest_network(mesh, edges, cheap);
   PerVertex<Reached> reached(mesh.vertex_count());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
@@ -96,6 +97,8 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   out.stretch = 100 * (result.distortion.l2_stretch - 1);
   out.islands = island_count(result);
   out.cuts = length_of(parts.surface(), result.cut_edges) / size;
+  const PerComponent<double> extra = extra_costs_on(parts, result.cut_edges);
+  out.costly_cuts = std::accumulate(extra.begin(), extra.end(), 0.0) / size;
   out.borders = length_of(parts.surface(), parts.surface().borders) / size;
   out.cones = cones_of(parts, result);
   out.empty = 1 / std::max(is_packed ? filled_when_packed(result, progress) : filled_boxes(result), least_filled) - 1;
@@ -109,9 +112,9 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
 double cost(const Quality& quality, const Weights& weights) {
   const double islands =
       quality.islands <= few_islands ? quality.islands : few_islands * (1 + std::log(quality.islands / few_islands));
-  return quality.stretch + weights.islands * islands + weights.cuts * quality.cuts + weights.borders * quality.borders +
-         weights.cones * quality.cones + weights.square * quality.empty + weights.symmetry * quality.asymmetry +
-         weights.strips * quality.bent_tubes + quality.on_lattice;
+  return quality.stretch + weights.islands * islands + weights.cuts * (quality.cuts + quality.costly_cuts) +
+         weights.borders * quality.borders + weights.cones * quality.cones + weights.square * quality.empty +
+         weights.symmetry * quality.asymmetry + weights.strips * quality.bent_tubes + quality.on_lattice;
 }
 
 const Quality& measured(MadeMap& made, SquareShare share, const Progress& progress) {
@@ -122,6 +125,7 @@ const Quality& measured(MadeMap& made, SquareShare share, const Progress& progre
 ComponentCosts costs_on(const SurfaceParts& parts, const MadeMap& made, const Weights& weights) {
   const Result& result = made.result;
   const PerComponent<double> cuts = lengths_on(parts, result.cut_edges);
+  const PerComponent<double> extra = extra_costs_on(parts, result.cut_edges);
   const PerComponent<double> borders = lengths_on(parts, made.surface->surface().borders);
   const PerComponent<Index> islands = islands_on(parts, result), cones = counts_on(parts, result.cones);
   const double price = price_of_island(result, weights);
@@ -129,7 +133,8 @@ ComponentCosts costs_on(const SurfaceParts& parts, const MadeMap& made, const We
   ComponentCosts out{excess, excess};
   for (Index i = 0; i < parts.count(); ++i) {
     out.stretch[i] = 100 * excess[i];
-    out.whole[i] = out.stretch[i] + (weights.cuts * cuts[i] + weights.borders * borders[i]) / std::sqrt(parts.area()) +
+    out.whole[i] = out.stretch[i] +
+                   (weights.cuts * (cuts[i] + extra[i]) + weights.borders * borders[i]) / std::sqrt(parts.area()) +
                    price * islands[i] + weights.cones * cones[i] * std::sqrt(parts.areas()[i] / parts.area());
   }
   return out;
@@ -144,6 +149,7 @@ std::string in_words(const Quality& quality) {
   std::string said = concat("stretch ", decimals(quality.stretch, 2), " %, ", count(islands, "island", "islands"), ", ",
                             significant(quality.cones, 3), " cones, cuts ", decimals(quality.cuts, 2), ", ",
                             decimals(100 / (1 + quality.empty), 0), " % filled");
+  if (quality.costly_cuts != 0) said += ", costly cuts " + decimals(quality.costly_cuts, 2);
   if (quality.borders != 0) said += ", borders " + decimals(quality.borders, 2);
   if (quality.bent_tubes != 0) said += ", bent tubes " + significant(quality.bent_tubes, 2);
   if (quality.asymmetry != 0) said += ", asymmetry " + significant(quality.asymmetry, 2);

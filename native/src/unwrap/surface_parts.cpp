@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "unwrap/surface_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "base/lower_quartile.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/topology.hpp"
+#include "unwrap/edge_set.hpp"
 #include "unwrap/triangle_measures.hpp"
 
 namespace lsgp {
@@ -72,6 +75,23 @@ PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& ed
     const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
     if (f == none || parts.of_triangle()[f] == none) continue;
     out[parts.of_triangle()[f]] += (positions.row(edges(e, 1)) - positions.row(edges(e, 0))).norm();
+  }
+  return out;
+}
+
+PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs& cuts) {
+  PerComponent<double> out(parts.count(), 0);
+  const Surface& surface = parts.surface();
+  if (surface.cut_costs.size() == 0 || cuts.rows() == 0) return out;
+  const double usual = std::max(1.0, lower_quartile(surface.cut_costs));
+  const EdgeSet is_cut(cuts);
+  for (Eigen::Index e = 0; e < surface.cut_costs.size(); ++e) {
+    const Index a = (*surface.edges)(e, 0), b = (*surface.edges)(e, 1);
+    if (!(surface.cut_costs[e] > usual) || !is_cut.has(a, b)) continue;
+    const Index f = parts.triangle_at(a, b);
+    if (f == none || parts.of_triangle()[f] == none) continue;
+    const double length = (surface.positions.row(b) - surface.positions.row(a)).norm();
+    out[parts.of_triangle()[f]] += (surface.cut_costs[e] / usual - 1) * length;
   }
   return out;
 }

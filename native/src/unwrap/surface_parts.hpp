@@ -53,6 +53,10 @@ double length_of(const Surface& surface, const VertexPairs& edges);
 // The total length of those edges of the surface that each component has.
 PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& edges);
 
+// (c) what cuts cost beyond their length: the surface's costs above 1, relative to those of cheap edges where these
+// are above 1 as well.
+PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs& cuts);
+
 // How many of the vertices, triangles, islands and defects each component has.
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices);
 PerComponent<Index> triangles_on(const SurfaceParts& parts);

@@ -15,7 +15,7 @@ from nightly import nightly
 from zoo.swept import circle, sweep
 
 FRONT = (0, 0, 1)
-UNSEEN = 0.1  # the cost of an edge that no view sees
+UNSEEN, IN_FULL_SIGHT = 0.1, 30.1  # the costs of an edge that no view sees, and of one that all do
 
 
 def horned(seed: int, horns: int) -> Mesh:
@@ -58,7 +58,7 @@ FAMILIES = {
 def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
     """Of all cuts, in square roots of the surface's area."""
     given = surface(mesh, edges=meshes.edges_of(mesh.triangles))
-    views = lsgp.cut_costs(given, FRONT, creases=False) - UNSEEN
+    views = np.cbrt((lsgp.cut_costs(given, FRONT, creases=False) - UNSEEN) / (IN_FULL_SIGHT - UNSEEN))
     hidden = replace(given, cut_costs=lsgp.cut_costs(given, FRONT)) if is_hidden else given
     result = lsgp.auto_unwrap(hidden, preset=preset)
     cuts = pairs(result.cut_edges)
