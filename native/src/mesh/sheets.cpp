@@ -105,8 +105,21 @@ class SheetMatching {
     measure_parts();
   }
 
+  // The clearest junctions first: what they join is one part for the others.
   void choose() {
-    for (SheetJunction& junction : junctions_) junction.pairs = best_pairs(junction);
+    merged_ = UnionFind(ssize(joined_.orientable));
+    Array<std::pair<double, Index>> order;
+    for (Index i = 0; i < ssize(junctions_); ++i) order.emplace_back(candidates(junctions_[i]).front().cost, i);
+    std::sort(order.begin(), order.end());
+    for (const auto& [cost, i] : order) {
+      SheetJunction& junction = junctions_[i];
+      junction.pairs = best_pairs(junction);
+      for (const auto& [a, b] : junction.pairs) {
+        for (std::size_t e = 0; e < junction.crowded.size(); ++e) {
+          merged_.unite(part_of(side(junction, e, a)), part_of(side(junction, e, b)));
+        }
+      }
+    }
   }
 
   void note_ends() {
@@ -280,7 +293,7 @@ class SheetMatching {
     return std::atan2(a.away.cross(b.away).norm(), -a.away.dot(b.away));
   }
 
-  double cost(const CrowdedEdge& at, const SheetSide& a, const SheetSide& b) const {
+  double cost(const CrowdedEdge& at, const SheetSide& a, const SheetSide& b) {
     const Index part_a = part_of(a), part_b = part_of(b);
     double sum = bend(a, b);
     if (a.with_edge == b.with_edge) {
@@ -289,37 +302,49 @@ class SheetMatching {
       const SheetSide &up = a.with_edge ? a : b, &down = a.with_edge ? b : a;
       if (at.along.cross(up.away).dot(down.away) > 0) sum *= 1 + concave;
     }
-    if (part_a != part_b) sum += slit_of_part + all_ends * (ends(part_a) + ends(part_b));
+    if (merged_.find(part_a) != merged_.find(part_b)) sum += slit_of_part + all_ends * (ends(part_a) + ends(part_b));
     return sum;
   }
 
-  Array<SheetPair> best_pairs(const SheetJunction& junction) const {
+  struct PairOfSheets {
+    double cost;
+    Index a, b;
+    double bend;
+    bool operator<(const PairOfSheets& other) const {
+      return std::tie(cost, a, b) < std::tie(other.cost, other.a, other.b);
+    }
+  };
+
+  // Of all pairs of sheets the mean over the edges by their length, the cheapest first.
+  Array<PairOfSheets> candidates(const SheetJunction& junction) {
     const Index count = ssize(junction.side_of_sheet.front());
-    Array<std::tuple<double, Index, Index>> candidates;
-    Array<double> bends(count * count, 0);
     double length = 0;
     for (const Index i : junction.crowded) length += crowded_[i].length;
+    Array<PairOfSheets> out;
     for (Index a = 0; a < count; ++a) {
       for (Index b = a + 1; b < count; ++b) {
-        double sum = 0;
+        PairOfSheets pair{0, a, b, 0};
         for (std::size_t e = 0; e < junction.crowded.size(); ++e) {
           const CrowdedEdge& at = crowded_[junction.crowded[e]];
-          const SheetSide &one = at.sides[junction.side_of_sheet[e][a]],
-                          &other = at.sides[junction.side_of_sheet[e][b]];
+          const SheetSide &one = side(junction, e, a), &other = side(junction, e, b);
           const double share = length > 0 ? at.length / length : 1;
-          sum += share * cost(at, one, other);
-          bends[a * count + b] += share * bend(one, other);
+          pair.cost += share * cost(at, one, other);
+          pair.bend += share * bend(one, other);
         }
-        candidates.emplace_back(sum, a, b);
+        out.push_back(pair);
       }
     }
-    std::sort(candidates.begin(), candidates.end());
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  Array<SheetPair> best_pairs(const SheetJunction& junction) {
     Array<SheetPair> pairs;
-    Array<char> taken(count, 0);
-    for (const auto& [sum, a, b] : candidates) {
-      if (taken[a] || taken[b] || (!pairs.empty() && bends[a * count + b] >= folded)) continue;
-      taken[a] = taken[b] = 1;
-      pairs.emplace_back(a, b);
+    Array<char> taken(junction.side_of_sheet.front().size(), 0);
+    for (const PairOfSheets& pair : candidates(junction)) {
+      if (taken[pair.a] || taken[pair.b] || (!pairs.empty() && pair.bend >= folded)) continue;
+      taken[pair.a] = taken[pair.b] = 1;
+      pairs.emplace_back(pair.a, pair.b);
     }
     return pairs;
   }
@@ -352,6 +377,7 @@ class SheetMatching {
   Array<Index> first_side_;  // number of the first side of each crowded edge, of all sides
   Index side_count_ = 0;
   Array<SheetJunction> junctions_;
+  UnionFind merged_{0};  // parts that are joined at junctions so far
   // Lengths of where parts end anyway, of their crowded edges, and of those at which they end as chosen.
   PerPart<double> free_, shared_, ended_;
   PerPart<double> certainty_;  // of parts' orientation

@@ -231,6 +231,19 @@ def test_maps_that_were_split_are_made_compact_again_in_other_ways() -> None:
             assert_same(solver.parameterize(cones, options=options), lsgp.parameterize(surface, cones, options=options))
 
 
+def test_straight_sides_are_found_once() -> None:
+    mesh = meshes.cylinder()
+    surface = surface_of(mesh)
+    options = lsgp.Options(mode="low-stretch", overlaps="split", compact="sparing", straighten=True)
+    solver = lsgp.Solver(surface)
+    fresh = solver.parameterize([], options=options)
+    again = solver.parameterize([], options=options)
+    assert again.factorizations == 0 < fresh.factorizations
+    assert_same(again, lsgp.parameterize(surface, [], options=options))
+    further = dataclasses.replace(options, square_share=2.0)
+    assert_same(solver.parameterize([], options=further), lsgp.parameterize(surface, [], options=further))
+
+
 def test_refused_call_leaves_the_solver_usable() -> None:
     mesh = meshes.bumpy_sphere()
     solver = lsgp.Solver(surface_of(mesh))
