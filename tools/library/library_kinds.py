@@ -28,6 +28,7 @@ from library_shapes import (
     waves,
     zero_set,
 )
+from numpy.typing import NDArray
 
 
 def body(random: Random, count: int) -> Polygons:
@@ -257,17 +258,22 @@ def slivers(random: Random, cells: int) -> Polygons:
 
 def voxels(random: Random, count: int) -> Polygons:
     """Cells where noisy balls are: surfaces that touch in edges and corners."""
+    balls = [(at, random.uniform(0.2, 0.5)) for at in random.uniform(-0.6, 0.6, (random.randint(1, 9), 3))]
+    noise, seed = random.choice([0, 0.02, 0.1]), random.randint(2**31)
     side = max(3, round(math.sqrt(count / 6)))
+    for _ in range(3):  # the share of cells at the surface depends on the noise
+        mesh = filled(_near(balls, side, noise * Random(seed).normal(size=(side,) * 3)), 2 / side)
+        side = max(3, round(side * math.sqrt(count / mesh.triangle_count())))
+    return mesh
+
+
+def _near(balls: list[tuple[FloatArray, float]], side: int, noise: FloatArray) -> NDArray[np.bool_]:
     line = np.linspace(-1, 1, side)
     grid = np.stack(np.meshgrid(line, line, line, indexing="ij"), axis=-1)
-    value = np.full((side,) * 3, -1.0)
-    for center in random.uniform(-0.6, 0.6, (random.randint(1, 9), 3)):
-        value = np.maximum(value, random.uniform(0.2, 0.5) - np.linalg.norm(grid - center, axis=-1))
-    value += random.normal(0, random.choice([0, 0.02, 0.1]), value.shape)
-    solid = value > 0
+    solid = np.max([radius - np.linalg.norm(grid - at, axis=-1) for at, radius in balls], axis=0) + noise > 0
     if not solid.any():
         solid[side // 2, side // 2, side // 2] = True
-    return filled(solid, 2 / side)
+    return solid
 
 
 def soup(random: Random, count: int) -> Polygons:

@@ -201,12 +201,15 @@ def filled(cells: NDArray[np.bool_], size: float = 1.0) -> Polygons:
 
 
 def with_defects(mesh: Polygons, share: float, random: Random) -> Polygons:
-    """A share of the faces gets a fin on an edge, is there twice or is turned around."""
+    """Of some of the faces, a share of all, each gets a fin on an edge, is there twice, or once more turned around."""
     corners = triangles_of(mesh)
-    count = int(share * len(corners))
+    a, b, c = np.moveaxis(mesh.positions[corners], 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    with_area = np.flatnonzero(area > 1e-6 * area.mean())
+    count = min(int(share * len(corners)), len(with_area))
     if count == 0:
         return mesh
-    chosen = corners[random.choice(len(corners), count, replace=False)]
+    chosen = corners[random.choice(with_area, count, replace=False)]
     finned, twice, turned = np.split(chosen, [int(0.8 * count), int(0.95 * count)])
     a, b, c = (mesh.positions[finned[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
