@@ -20,7 +20,7 @@ from result_check import undeclared_faults
 from sanitized_run import many_solves
 from scipy.spatial import ConvexHull
 from test_overlaps import quads_of
-from zoo import closed
+from zoo import closed, swept
 
 COMPACT = lsgp.Options(compact="full")
 FILL = 0.62  # of the square, what packed islands usually take
@@ -318,3 +318,15 @@ def test_what_makes_no_sense_is_refused(options: dict[str, object], words: str) 
     with pytest.raises(lsgp.InputError, match=words) as refused:
         unwrap(meshes.cube(2), lsgp.Options(**options))
     assert refused.value.code == "WRONG_PARAMETER"
+
+
+@pytest.mark.parametrize("taper", [0.0, 0.15])
+def test_a_long_strip_is_divided_whatever_the_texel_density_of_its_pieces(taper: float) -> None:
+    """Coils of coarse tubes, of which one grows wider: the stretch of its strip rises from one end to the other."""
+    t = np.linspace(0, 1, 25)
+    path = np.stack([2.4 * np.cos(4.2 * np.pi * t), 2.4 * np.sin(4.2 * np.pi * t), 4 * t], axis=1)
+    tube = swept.sweep(path, swept.circle(0.055, 23), closed=False, caps=False)
+    middle = np.repeat(path, 23, axis=0)
+    wider = middle + (1 + taper * np.repeat(t, 23))[:, None] * (tube.positions - middle)
+    result = lsgp.auto_unwrap(lsgp.Surface(wider, tube.triangles))
+    assert uv_area(result) > 0.25 and 3 < len(island_points(result)) < 15
