@@ -84,7 +84,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": surface(BOX), "cones": BOX.cones[:2], "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "target": 1.05, "symmetric": True, "creases": True, "sharp": BOX.triangles[:3, :2]},
-            "pins": None,
+            **{"pins": None, "seconds": None, "up": np.array([0.0, 1.0, 0.0])},
             **{"pack": "shelves", "margin": None, "udim": None, "stack": None, "effort": None},
             **{"texels": lsgp.TexelLayout(100.0, 1024), "weights": lsgp.Weights(islands=0.1), "progress": None},
         },
@@ -174,6 +174,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.turn_islands,
         {name: ISLANDS[name] for name in ("corner_uv", "island")}
         | {"turns": np.full(int(FREE_RESULT.island.max()) + 1, 0.5)},
+    ),
+    "stand_upright": (
+        lsgp.stand_upright,
+        {
+            **{"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "margin": 0.01, "whole": True},
+            "turns": np.full(int(FREE_RESULT.island.max()) + 1, 2.0),
+        },
     ),
     "align_islands": (
         lsgp.align_islands,

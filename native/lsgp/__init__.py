@@ -71,6 +71,7 @@ from .layouts.islands import correct_aspect, fit_placement
 from .layouts.packing import pack_islands
 from .layouts.stacking import Stacks, find_stacks
 from .layouts.texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
+from .layouts.upright import stand_upright
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .options import Options, Seamless
 from .presets.auto_unwrap import Weights, auto_unwrap, preset_options, preset_weights
@@ -184,6 +185,7 @@ __all__ = [
     "shape_patches",
     "singular_values",
     "split_into_paths",
+    "stand_upright",
     "stitch_borders",
     "stitch_islands",
     "texel_density",

@@ -24,7 +24,7 @@ from ..tasks.directions import drawn_directions
 from ..tasks.summaries import unwrap_summary
 from ..tasks.unwrapping import Unwrapped, UnwrapTask
 from ..uv_maps.texels import map_density
-from . import in_place, packing
+from . import in_place, packing, upright
 from .densities import packed_at_density
 from .remembered import unwrap_all_once
 from .stacking import packed_in_stacks
@@ -118,6 +118,8 @@ def placed_maps(
         packed, stacked = packed_in_stacks(parts, pack, mirrored=settings.stack == "mirrored")
         if stacked:
             notes.append(f"{counted(stacked, 'island')} stacked on others")
+    if settings.turned and settings.surroundings is None and settings.stack is None and settings.udim == 1:
+        packed = upright.standing(solved, parts, packed, margin)
     if settings.surroundings is not None:
         notes += in_place.told(place, [part.corner_uv for part in parts], packed)
     fills = settings.surroundings is None and settings.stack is None and settings.udim == 1

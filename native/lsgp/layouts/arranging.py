@@ -40,9 +40,7 @@ def upright_turns(surface: Surface, corner_uv: ArrayLike, island: ArrayLike, up:
     uv, island, count = _islands(corner_uv, island)
     if len(island) != len(surface.triangles):
         arguments.refuse("island", len(island), "pass a number for each triangle")
-    axis = arguments.floats_of_shape("up", up, (3,))
-    if not (np.isfinite(axis).all() and axis.any()):
-        arguments.refuse("up", up, "pass finite numbers that are not all 0")
+    axis = require_up(up)
     inside = island >= 0
     turns = np.zeros(count)
     open_ones = np.ones(count, bool)
@@ -58,6 +56,14 @@ def upright_turns(surface: Surface, corner_uv: ArrayLike, island: ArrayLike, up:
         turns[found] = [math.pi / 2 - math.atan2(z.imag, z.real) for z in sums[found].tolist()]
         open_ones &= ~found
     return (turns + math.pi) % (2 * math.pi) - math.pi
+
+
+def require_up(up: ArrayLike) -> FloatArray:
+    """Raises InputError."""
+    axis = arguments.floats_of_shape("up", up, (3,))
+    if not (np.isfinite(axis).all() and axis.any()):
+        arguments.refuse("up", up, "pass finite numbers that are not all 0")
+    return axis
 
 
 def _image_of(direction: FloatArray, places: FloatArray, uv: FloatArray) -> NDArray[np.complex128]:

@@ -18,8 +18,10 @@ from ..base.progress import Progress, share_of, tell
 from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
+from .arranging import require_up, upright_turns
 from .stacking import find_stacks
 from .texels import TexelLayout, at_texel_density, outside_findings, tile_count
+from .upright import stand_upright
 
 Pack = Literal["tight", "shelves"]
 Stack = Literal["same", "mirrored"]
@@ -56,6 +58,7 @@ class Packing:
         density, which scales it too. udim: over how many UDIM tiles a tight layout is
         spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
+    up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
     """
 
     pack: Pack | None = None
@@ -63,9 +66,12 @@ class Packing:
     udim: int | None = None
     stack: Stack | None = None
     effort: Effort | None = None
+    up: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
         """Raises InputError: WRONG_PARAMETER."""
+        if self.up is not None:
+            require_up(self.up)
         if self.pack is not None:
             arguments.require_choice("pack", self.pack, get_args(Pack))
         if self.margin is not None:
@@ -262,6 +268,9 @@ def laid_out(
     pack: Pack = "tight"
     try:
         packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)
+        if packing.up is not None and how["turned"] and packing.udim in (None, 1) and packing.stack is None:
+            turns = upright_turns(surface, packed.corner_uv, packed.island, packing.up)
+            packed = replace(packed, corner_uv=stand_upright(packed.corner_uv, packed.island, turns, margin=margin))
     except InputError:
         if packing.pack == "tight" or packing.udim is not None or packing.stack is not None:
             raise

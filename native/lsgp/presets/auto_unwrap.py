@@ -183,6 +183,7 @@ def auto_unwrap(
     stack: Stack | None = None,
     effort: Effort | None = None,
     texels: TexelLayout | None = None,
+    up: Sequence[float] | None = None,
     weights: Weights | None = None,
     seconds: float | None = None,
     progress: Progress | None = None,
@@ -218,6 +219,8 @@ def auto_unwrap(
     seconds: after so many the best map made until then is packed quickly, and TIME_LIMIT among the warnings says so; it
         is raised where no map was made in time. None: no limit. Results depend on the machine then.
     weights: by which maps are compared; None: `preset_weights(preset)`. `Result.choices` says what they chose from.
+    up: (3,), what is to point up in the image, as far as islands of a tight layout in one square can be turned by
+        quarters at no loss, as by `stand_upright`; None: nothing.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
         those of the placement, and ISLANDS_TINY names islands that do not keep their shape in single precision.
@@ -236,7 +239,7 @@ def auto_unwrap(
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
         if chosen.seamless is not None:
             refuse_of_seamless()
-    packing = Packing(pack, margin, udim, stack, effort)
+    packing = Packing(pack, margin, udim, stack, effort, up)
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)

@@ -138,7 +138,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     add_direction_options(
         unwrap,
         "islands are rotated so that the texture's v follows it; 0 0 0: any rotation (default: with --preset tile "
-        "0 1 0, otherwise 0 0 0)",
+        "0 1 0; otherwise packed islands have 0 1 0 pointing up as far as quarter turns take no room)",
         "v",
     )
     add_stitch_option(unwrap, default=None)
@@ -630,7 +630,8 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
     effort = args.effort
     if effort is None and args.preset is not None and args.pack != SHELVES:
         effort = preset_effort(args.preset)
-    return Packing(args.pack, margin, args.udim, args.stack, effort)
+    up = DEFAULT_UP if args.up is None else tuple(args.up)
+    return Packing(args.pack, margin, args.udim, args.stack, effort, up if any(up) else None)
 
 
 def library_options(args: argparse.Namespace) -> Options:
