@@ -39,6 +39,16 @@ def region(kind: str = "WINDOW", within: str = "VIEW_3D") -> bpy.types.Region:
     return next(region for region in area(within).regions if region.type == kind)
 
 
+def split_off_uv_editor() -> bpy.types.Area:
+    """Half of the first 3D view as a UV editor; the other half stays what it is."""
+    known = {one.as_pointer() for one in window().screen.areas}
+    with bpy.context.temp_override(window=window(), area=area(), region=region()):
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    new = next(one for one in window().screen.areas if one.as_pointer() not in known)
+    new.ui_type = "UV"
+    return new
+
+
 def running(idname: str) -> bool:
     """Whether a modal operator is."""
     return any(operator.bl_idname == idname for operator in window().modal_operators)

@@ -6,7 +6,7 @@ from contextlib import suppress
 import bpy
 from installed import addon
 from scenes import add_cone_cube, edit
-from windows import DRAWN, area, middle, move_to, press, region, take_picture, until, window
+from windows import DRAWN, area, middle, move_to, press, split_off_uv_editor, take_picture, until, window
 
 KEYS = ("type", "shift", "ctrl", "alt", "oskey")
 
@@ -65,11 +65,8 @@ def test_the_sidebar_of_the_uv_editor_has_our_panels():
     cube = add_cone_cube()
     bpy.ops.uv.cone_unwrap()
     edit(cube)
-    editor = max((one for one in window().screen.areas if one.type != "VIEW_3D"), key=lambda one: one.width)
-    before = editor.type
-    view = area()
-    view.type = "IMAGE_EDITOR"
-    view.ui_type = "UV"
+    view = split_off_uv_editor()
+    yield DRAWN
     view.spaces.active.show_region_ui = True
     yield DRAWN
     side = next(one for one in view.regions if one.type == "UI")
@@ -81,6 +78,3 @@ def test_the_sidebar_of_the_uv_editor_has_our_panels():
     with bpy.context.temp_override(window=window(), area=view, region=side):
         shown = {panel.bl_label for panel in addon.ui.panels.UV_EDITOR_PANELS if panel.poll(bpy.context)}
     assert {"Cone Unwrap", "Islands", "Quality", "Overlay", "Texel Density"} <= shown
-    view.type = "VIEW_3D"
-    assert before == editor.type and region() is not None
-    yield DRAWN

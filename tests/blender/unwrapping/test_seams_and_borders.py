@@ -195,6 +195,20 @@ def test_straight_border_makes_a_tube_a_strip(in_edit_mode):
     assert uv_map.sister_difference() <= UV_ROUNDING
 
 
+def test_strips_make_a_tube_a_straight_strip_without_any_mark():
+    tube = add_tube(taper=0.0)
+    assert bpy.ops.uv.cone_unwrap(border="STRIPS") == {"FINISHED"}
+    uv_map = UvMap(tube)
+    directions = uv_map.border_directions()
+    assert len(directions) == 32
+    assert np.abs(np.sin(directions - directions[0])).max() < STRAIGHT
+    assert uv_map.islands() == 1
+    # Around is as long as sixteen sides of a circle of radius 1, along is 2.
+    upright = uv_map.uv @ (1, 1j) * np.exp(-1j * directions[0])
+    sides = np.ptp(upright.real), np.ptp(upright.imag)
+    assert sides[0] / sides[1] == pytest.approx(16 * 2 * math.sin(math.pi / 16) / 2, rel=1e-4)
+
+
 def test_cube_corners_stay_where_seams_are_borders():
     cube = add_cone_cube()
     upper = edges_where(cube, lambda place: abs(place[2] - 1) < 1e-6 and max(abs(place[0]), abs(place[1])) > 1 - 1e-6)
