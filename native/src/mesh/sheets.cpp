@@ -20,12 +20,9 @@ using Vector3 = Eigen::Vector3d;
 // that leaves a slit in its part, or whose parts both end all round, bends as a corner does.
 constexpr double inside_out = M_PI, slit_of_part = M_PI / 2, all_ends = M_PI / 2;
 
-// Of pairs that bend alike, those of convex edges continue: where two solids touch at an edge, each has its own
-// surface. The part by which the others cost more is far above the rounding of coordinates, and not visible.
-constexpr double concave = 1e-3;
-
-// Further pairs at an edge bend less than this, half way between a corner and a fold.
-constexpr double folded = 0.75 * M_PI;
+// Half way to a corner: what bends more is a corner itself, what bends less goes on smoothly. Of corners one is clearly
+// better than other pairs if these cost more by as much.
+constexpr double corner_bend = M_PI / 4;
 
 // At an edge of more triangles none continues another one more than the next would.
 constexpr Index most_at_edge = 32;
@@ -293,14 +290,11 @@ class SheetMatching {
     return std::atan2(a.away.cross(b.away).norm(), -a.away.dot(b.away));
   }
 
-  double cost(const CrowdedEdge& at, const SheetSide& a, const SheetSide& b) {
+  double cost(const SheetSide& a, const SheetSide& b) {
     const Index part_a = part_of(a), part_b = part_of(b);
     double sum = bend(a, b);
     if (a.with_edge == b.with_edge) {
       sum += inside_out * (part_a == part_b ? 1 : std::min(certainty_[part_a], certainty_[part_b]));
-    } else {
-      const SheetSide &up = a.with_edge ? a : b, &down = a.with_edge ? b : a;
-      if (at.along.cross(up.away).dot(down.away) > 0) sum *= 1 + concave;
     }
     if (merged_.find(part_a) != merged_.find(part_b)) sum += slit_of_part + all_ends * (ends(part_a) + ends(part_b));
     return sum;
@@ -328,7 +322,7 @@ class SheetMatching {
           const CrowdedEdge& at = crowded_[junction.crowded[e]];
           const SheetSide &one = side(junction, e, a), &other = side(junction, e, b);
           const double share = length > 0 ? at.length / length : 1;
-          pair.cost += share * cost(at, one, other);
+          pair.cost += share * cost(one, other);
           pair.bend += share * bend(one, other);
         }
         out.push_back(pair);
@@ -341,8 +335,11 @@ class SheetMatching {
   Array<SheetPair> best_pairs(const SheetJunction& junction) {
     Array<SheetPair> pairs;
     Array<char> taken(junction.side_of_sheet.front().size(), 0);
-    for (const PairOfSheets& pair : candidates(junction)) {
-      if (taken[pair.a] || taken[pair.b] || (!pairs.empty() && pair.bend >= folded)) continue;
+    const Array<PairOfSheets> all = candidates(junction);
+    const bool is_corner = all[0].bend >= corner_bend;
+    if (is_corner && all[1].cost < all[0].cost + corner_bend) return {};
+    for (const PairOfSheets& pair : all) {
+      if (taken[pair.a] || taken[pair.b] || (!pairs.empty() && pair.bend >= corner_bend)) continue;
       taken[pair.a] = taken[pair.b] = 1;
       pairs.emplace_back(pair.a, pair.b);
     }

@@ -16,7 +16,8 @@ struct JoinedParts {
 };
 
 // Joins triangles at crowded edges, those of three or more triangles: the two that continue each other best, then the
-// best two of those left, as long as they do not fold back. The others end there. A pair continues the better,
+// best two of those left, as long as they do so smoothly. The others end there, and all do where the best two are a
+// corner of which others are no worse, as where two solids touch at an edge. A pair continues the better,
 // - the less the surface bends between them, and turns inside out;
 // - the less the parts that they are of end elsewhere: a fin has borders of its own, a body has none;
 // - if it is one part: one that ended there would have a slit.

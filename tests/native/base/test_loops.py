@@ -179,6 +179,9 @@ REVIEWED = {
         ("while (h != none && h != corner)", AROUND_A_VERTEX, SHORT),
         ("while (h == none && mesh.twin[first] != none)", AROUND_A_VERTEX, SHORT),
     ],
+    "shaping/rectangle.cpp": [
+        ("for (std::size_t at = corners[i]; at != end; at = (at + 1) % count)", SIDES, SHORT),
+    ],
     "mesh/sheets.cpp": [
         ("for (; parent_[root] != root; root = parent_[root])", LINKED, SHORT),
         ("for (bool rest = turned; parent_[i] != root && parent_[i] != i;)", LINKED, SHORT),
