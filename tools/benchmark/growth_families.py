@@ -158,6 +158,20 @@ def fins(count: int) -> lsgp.Surface:
     return surface_of(meshes.make(positions, np.concatenate([plate.triangles, *ribs])))
 
 
+def scraps(count: int) -> lsgp.Surface:
+    """A ring with another triangle on an edge of each third of its triangles."""
+    along = max(4, round(math.sqrt(count / (2 * 1.8 * (1 + 1 / 3)))))
+    body = meshes.torus(round(1.8 * along), along)
+    feet = body.triangles[np.random.default_rng(SEED).permutation(len(body.triangles))[: len(body.triangles) // 3]]
+    a, b, c = (body.positions[feet[:, i]] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(b - a, axis=1, keepdims=True)
+    heads = (a + b) / 2 + normal / np.linalg.norm(normal, axis=1, keepdims=True) * length / 2
+    numbers = len(body.positions) + np.arange(len(feet))
+    triangles = np.concatenate([body.triangles, np.stack([feet[:, 0], feet[:, 1], numbers], axis=1)])
+    return surface_of(meshes.make(np.concatenate([body.positions, heads]), triangles))
+
+
 @dataclass(frozen=True)
 class Family:
     """is_closed: others cannot become quads. options: of `auto_unwrap`. presets: those that these options go with."""
@@ -181,4 +195,5 @@ FAMILIES = {
     "needles": Family("a cylinder of needles", needles),
     "strips": Family("a spiral band", strips, is_closed=False),
     "fins": Family("ribs: edges of three triangles", fins, is_closed=False),
+    "scraps": Family("a triangle on each third one of a ring", scraps, is_closed=False),
 }
