@@ -15,6 +15,7 @@ namespace lsgp {
 
 namespace {
 
+constexpr double nearly_all = 0.98;  // of the curvature: what is left is that of slivers and noise
 // Components may end at their creases where these carry this share of their curvature, if their map gains by it.
 constexpr double least_share_to_try = 0.5;
 
@@ -63,6 +64,9 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
   if (options.of_map.seamless) {
     if (given.are_free() && follows_features(surface, options)) {
       out.possible = crease_borders(surface, {}, creases, untimed);
+      creases.least_share = nearly_all;
+      out.carry_all =
+          surface.features.rows() == 0 && crease_borders(surface, {}, creases, untimed).rows() == out.possible.rows();
     }
     return out;
   }
@@ -78,9 +82,10 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
   return out;
 }
 
-Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MakeMap& make, Objective& objective,
-                     const Progress& progress) {
-  const std::shared_ptr<BorderedSurface>& surface = surfaces.first();
+Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, const MakeMap& make,
+                     Objective& objective, const Progress& progress) {
+  const VertexPairs& possible = creases.possible;
+  const std::shared_ptr<BorderedSurface> surface = surfaces.first();
   if (possible.rows() == 0) {
     Made best = make(surface, progress);
     tell(progress, 1);
@@ -88,23 +93,33 @@ Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, co
   }
   constexpr double trying = 0.5;  // of the time, without further borders
   const Progress rest = share_of(progress, trying, 1);
-  Made best;
-  try {
-    best = make(surface, share_of(progress, 0, trying));
-  } catch (const Error& error) {
-    if (error.code() != Code::solver_failed) throw;
-    // Ending at creases it takes fewer cones, or none.
-    return make(surfaces.ending_at(possible), rest);
+  Made best, ended;
+  {
+    std::optional<Objective::Bound> bound;
+    if (creases.carry_all) {
+      // Without borders there are cones at all corners, which takes far longer.
+      ended = attempt([&] { return make(surfaces.ending_at(possible), share_of(progress, 0, 0)); });
+      if (ended) bound.emplace(objective, objective.quality(*ended, share_of(progress, 0, 0)));
+    }
+    try {
+      best = make(surface, share_of(progress, 0, trying));
+    } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
+      if (ended) return ended;
+      if (error.code() != Code::solver_failed) throw;
+      // Ending at creases it takes fewer cones, or none.
+      return make(surfaces.ending_at(possible), rest);
+    }
   }
   const PossibleBorders borders(surface->parts, possible);
   const auto make_ending = [&](const VertexPairs& edges, const Progress& share) {
-    return make(surfaces.ending_at(edges), share);
+    return ended && edges.rows() == possible.rows() ? ended : make(surfaces.ending_at(edges), share);
   };
   if (best->result.seamless) {
     AlongLattice gain(surface->parts, borders);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   } else {
-    const Objective::Bound bound(objective, objective.cost_of(*best, share_of(rest, 0, 0)));
+    const Objective::Bound bound(objective, objective.quality(*best, share_of(rest, 0, 0)));
     LowerCost gain(surface->parts, borders, objective);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   }

@@ -14,6 +14,9 @@ namespace lsgp {
 struct CreaseBorders {
   VertexPairs required;  // which components end at in any case
   VertexPairs possible;  // at which others end if their maps gain by it
+  // In a seamless layout without marked features: those possible carry nearly all curvature of their components, so
+  // that it takes hardly any cones if these end there.
+  bool carry_all = false;
 };
 
 // Bake requires those of all hard components; Paint those of components with curvature at more than 24 vertices, since
@@ -30,8 +33,8 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
 
 // The map of the surface with the best of possible borders: they are tried on components that may gain by them, and all
 // of them where no map is found without.
-// make: its maps, all of them seamless or none.  Throws what `make` throws.
-Made best_at_creases(BorderedSurfaces& surfaces, const VertexPairs& possible, const MakeMap& make, Objective& objective,
-                     const Progress& progress);
+// make: its maps.  Throws what `make` throws.
+Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, const MakeMap& make,
+                     Objective& objective, const Progress& progress);
 
 }  // namespace lsgp

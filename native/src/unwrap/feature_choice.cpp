@@ -45,10 +45,18 @@ MapOptions FeatureMaps::unstraightened() const {
   return out;
 }
 
+bool FeatureMaps::is_too_costly(const CompletedCones& cones) const {
+  Quality expected;
+  expected.islands = parts_.count();
+  expected.cones = count_by_area(parts_, cones.cones.vertices);
+  return objective_.is_beyond_bound(expected);
+}
+
 Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryChoice& others,
                                   const Progress& progress) const {
   const auto third = [&](int number) { return share_of(progress, (number - 1) / 3.0, number / 3.0); };
-  Made along = attempt([&] { return through(for_features, third(1)); });
+  Made along;
+  if (!is_too_costly(for_features)) along = attempt([&] { return through(for_features, third(1)); });
   if (along && !runs_along_features(along->result)) along.reset();
   // Creases along the lattice take time: they are tried with the cones that are chosen. Those that are released run
   // along it through other cones, perhaps.
@@ -138,7 +146,7 @@ Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces
     choosing = share_of(progress, placing_for_features, 1);
   }
   const MapThrough map = maps_of(surface, given.pins);
-  const FeatureMaps maps(surface->parts, map, options);
+  const FeatureMaps maps(surface->parts, map, options, std::cref(objective));
   SymmetryChoice cones(*surface, map, given.cones, given.symmetry, objective);
   const Progress untimed = share_of(choosing, 1, 1);
   const bool is_seamless = options.of_map.seamless.has_value();

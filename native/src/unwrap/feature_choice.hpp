@@ -23,8 +23,9 @@ Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces
 class FeatureMaps {
  public:
   // maps: of the surface whose components are given.
-  FeatureMaps(Borrowed<const SurfaceParts> parts, Borrowed<const MapThrough> maps, Borrowed<const MapOptions> options)
-      : parts_(parts), maps_(maps), options_(options) {}
+  FeatureMaps(Borrowed<const SurfaceParts> parts, Borrowed<const MapThrough> maps, Borrowed<const MapOptions> options,
+              Borrowed<const Objective> objective)
+      : parts_(parts), maps_(maps), options_(options), objective_(objective) {}
 
   // The best seamless map through cones for features, or the other ones.
   Made best_on_lattice(const CompletedCones& for_features, SymmetryChoice& others, const Progress& progress) const;
@@ -40,12 +41,15 @@ class FeatureMaps {
   // features: of the other one.
   Made best_along(const Made& along, const Made& usual, UsualFeatures features, const Progress& progress) const;
   Made through(const CompletedCones& cones, const Progress& progress) const { return maps_(cones, options_, progress); }
+  // Whether its map, without stretch, is expected to cost more than another one that was made.
+  bool is_too_costly(const CompletedCones& cones) const;
   // The options without creases along the lattice.
   MapOptions unstraightened() const;
 
   const SurfaceParts& parts_;
   const MapThrough& maps_;
   const MapOptions& options_;
+  const Objective& objective_;
 };
 
 }  // namespace lsgp

@@ -51,7 +51,8 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   ProgressSteps steps(progress);
   std::exception_ptr failure;
   while (const std::optional<Estimate> next = most_promising(candidates)) {
-    if (!rank.has_defects() && next->cost - error_of_estimates >= std::min(rank.cost, bound_)) break;
+    const double bound = rank.has_defects() ? this->bound() : std::min(rank.cost, this->bound());
+    if ((best || failure) && next->cost - error_of_estimates >= bound) break;
     const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
     const Candidate candidate = std::move(*place);
     candidates.erase(place);
@@ -93,6 +94,12 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   if (!best) std::rethrow_exception(failure);
   tell(progress, 1);
   return best;
+}
+
+bool Objective::is_beyond_bound(Quality expected) const {
+  if (!rival_) return false;
+  expected.on_lattice = rival_->on_lattice;
+  return cost(expected, weights_) - error_of_estimates >= bound();
 }
 
 void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {

@@ -50,14 +50,18 @@ class Objective {
   // Of all maps that were made until now, in any choice; null where there is none.
   const Made& best_so_far() const { return best_so_far_; }
 
+  // Whether a map of this quality, on as good a lattice as the other one, is expected to cost more than the bound.
+  bool is_beyond_bound(Quality expected) const;
+
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
 
-  // During its lifetime nothing is made that is expected to cost more than another map does.
+  // During its lifetime nothing but the first candidate of a choice is made that is expected to cost more than another
+  // map does.
   class Bound {
    public:
-    Bound(Objective& objective, double cost) : objective_(objective) { objective.bound_ = cost; }
-    ~Bound() { objective_.bound_ = infinity; }
+    Bound(Objective& objective, const Quality& rival) : objective_(objective) { objective.rival_ = rival; }
+    ~Bound() { objective_.rival_.reset(); }
     Bound(const Bound&) = delete;
     Bound& operator=(const Bound&) = delete;
 
@@ -79,7 +83,9 @@ class Objective {
   const Weights weights_;
   const SquareShare share_;
   std::vector<Choice> choices_;
-  double bound_ = infinity;
+  double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
+
+  std::optional<Quality> rival_;
   Made best_so_far_;
   Rank rank_so_far_;
 };

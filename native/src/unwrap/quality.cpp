@@ -55,13 +55,6 @@ double filled_boxes(const Result& result) {
   return room > 0 ? area_of(result, result.corner_uv) / room : 1;
 }
 
-double cones_of(const SurfaceParts& parts, const Result& result) {
-  const PerComponent<Index> counts = counts_on(parts, result.cones);
-  double sum = 0;
-  for (Index i = 0; i < parts.count(); ++i) sum += counts[i] * std::sqrt(parts.areas()[i] / parts.area());
-  return sum;
-}
-
 // The share of the area that is in tubes of components with cones at these.
 double bent_tubes(const BorderedSurface& surface, const Result& result) {
   const SurfaceParts& parts = surface.parts;
@@ -100,7 +93,7 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   const PerComponent<double> extra = extra_costs_on(parts, result.cut_edges);
   out.costly_cuts = std::accumulate(extra.begin(), extra.end(), 0.0) / size;
   out.borders = length_of(parts.surface(), parts.surface().borders) / size;
-  out.cones = cones_of(parts, result);
+  out.cones = count_by_area(parts, result.cones);
   out.empty = 1 / std::max(is_packed ? filled_when_packed(result, progress) : filled_boxes(result), least_filled) - 1;
   out.on_lattice = cost_on_lattice(result);
   out.bent_tubes = bent_tubes(*made.surface, result);
@@ -142,6 +135,13 @@ ComponentCosts costs_on(const SurfaceParts& parts, const MadeMap& made, const We
 
 double price_of_island(const Result& result, const Weights& weights) {
   return weights.islands * std::min(1.0, few_islands / std::max<Index>(1, island_count(result)));
+}
+
+double count_by_area(const SurfaceParts& parts, const std::vector<Index>& cones) {
+  const PerComponent<Index> counts = counts_on(parts, cones);
+  double sum = 0;
+  for (Index i = 0; i < parts.count(); ++i) sum += counts[i] * std::sqrt(parts.areas()[i] / parts.area());
+  return sum;
 }
 
 std::string in_words(const Quality& quality) {

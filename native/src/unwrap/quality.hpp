@@ -12,6 +12,9 @@ struct SquareShare {
   double squares = 1;
 };
 
+// The number of cones, on several components times the square roots of their shares of the area.
+double count_by_area(const SurfaceParts& parts, const std::vector<Index>& cones);
+
 // The quality of a map without its asymmetry; measured once.  progress: of packing.  Throws CANCELLED.
 const Quality& measured(MadeMap& made, SquareShare share, const Progress& progress);
 

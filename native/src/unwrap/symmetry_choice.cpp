@@ -18,6 +18,9 @@ constexpr double placing = 0.6;  // of the time of cones and maps
 constexpr double islands_of_others = 0.75;
 // Of the stretch that cones are placed for, what low stretch leaves: 0.25 to 0.57 on 22 meshes.
 constexpr double left_by_low_stretch = 0.5;
+// Of the stretch of one map, what others are expected to have at least: where many times the target is left, cones at
+// other places hardly reach it either.
+constexpr double left_by_others = 0.5;
 constexpr double half_symmetric = 0.5;  // cones, and not cuts
 
 // Those that concern marked vertices, or no elements.
@@ -161,10 +164,13 @@ std::optional<double> SymmetryChoice::expected_of_others(double asymmetry) const
         return cost(one.quality, weights) < cost(other.quality, weights);
       });
   Quality other = best.quality;
+  // Without cones there are no others, and without cuts no other ones.
+  const bool has_cones = !best.map->cones.cones.vertices.empty();
+  if (other.cuts == 0 || (asymmetry == 1 && !has_cones && made(Kind::free_cuts) != nullptr)) return {};
   if (other.asymmetry > asymmetry * share_) return {};
   const double left = options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
   other.islands = std::max<double>(surface_.parts.count(), islands_of_others * other.islands);
-  other.stretch = std::min(other.stretch, 100 * (given_.target - 1) * left);
+  other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));
   other.asymmetry = asymmetry * share_;
   other.on_lattice = cost_on_even_lattice(best.map->result);
   return cost(other, weights);

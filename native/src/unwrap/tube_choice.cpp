@@ -79,7 +79,7 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
     ending.borders = joined(ending.borders, borders);
     return BorderedSurfaces(std::move(ending), in_tubes);
   };
-  const auto best = [&](BorderedSurfaces& surfaces, const VertexPairs& possible, TubesBecome what,
+  const auto best = [&](BorderedSurfaces& surfaces, const CreaseBorders& possible, TubesBecome what,
                         const Progress& share) {
     const auto make_one = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& of_one) {
       return make(bordered, what, of_one);
@@ -88,10 +88,10 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
   };
   BorderedSurfaces usual = ending_at(creases.required);
   const SurfaceParts& parts = usual.first()->parts;
-  if (tubes.triangles.empty()) return best(usual, creases.possible, TubesBecome::anything, progress);
+  if (tubes.triangles.empty()) return best(usual, creases, TubesBecome::anything, progress);
   const PerComponent<char> has_tubes = with_tubes(parts, tubes);
   BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, has_tubes), tubes.borders));
-  const VertexPairs others = beside_tubes(creases.possible, parts, has_tubes);
+  const CreaseBorders others{{}, beside_tubes(creases.possible, parts, has_tubes)};
   const auto quality = [&](const Made& made, const Progress& share) { return objective.quality(*made, share); };
   const double bent = objective.weights().strips * share_of_tubes(parts, tubes);
   Made first;  // of the two, once it is made
@@ -107,13 +107,12 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
        [&](const Progress& share) { return made([&] { return best(unrolled, others, TubesBecome::strips, share); }); },
        quality,
        {}});
-  candidates.push_back({"tubes as they are",
-                        [&] { return expected(bent + least_cost(usual, objective.weights())); },
-                        [&](const Progress& share) {
-                          return made([&] { return best(usual, creases.possible, TubesBecome::anything, share); });
-                        },
-                        quality,
-                        {}});
+  candidates.push_back(
+      {"tubes as they are",
+       [&] { return expected(bent + least_cost(usual, objective.weights())); },
+       [&](const Progress& share) { return made([&] { return best(usual, creases, TubesBecome::anything, share); }); },
+       quality,
+       {}});
   return objective.choose(std::move(candidates), progress);
 }
 

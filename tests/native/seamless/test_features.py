@@ -314,12 +314,21 @@ def test_lines_without_a_free_coordinate_are_laid_out(corners: int, seed: int) -
 def test_all_creases_of_a_plate_with_many_tunnels_run_along_the_lattice() -> None:
     mesh = surface(tunnels.tunneled_plate(4, 3, 1))
     alone, shared = (
-        lsgp.auto_unwrap(mesh, preset="tile", options=replace(TILE, threads=threads)) for threads in (1, 2)
+        lsgp.auto_unwrap(mesh, preset="tile", creases=False, options=replace(TILE, threads=threads))
+        for threads in (1, 2)
     )
     for result in (alone, shared):
         assert result.seamless.feature_share == 1 and result.seamless.error == 0
         assert len(result.flipped) == len(result.wrong_angle_sums) == 0
     assert np.array_equal(alone.corner_uv, shared.corner_uv)
+
+
+def test_a_plate_with_more_corners_than_cones_are_worth_ends_at_its_creases() -> None:
+    mesh = tunnels.tunneled_plate(4, 3, 1)
+    result = lsgp.auto_unwrap(surface(mesh), preset="tile")
+    assert len(result.borders) > 0 and len(result.cones) == 0 and result.solved.all()
+    assert result.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
+    assert undeclared_faults(replace(surface(mesh), borders=result.borders), result, TILE) == []
 
 
 def test_tile_of_a_plate_with_many_tunnels_reports_progress_and_can_be_stopped_late() -> None:
