@@ -878,15 +878,14 @@ py::dict shape_patches(const SurfaceArrays& surface_arrays, const FloatArray& co
                        const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
-  const std::vector<Index> chosen = to_vector("triangles", triangles), at = to_vector("corners", corners),
-                           fixed = to_vector("pinned", pinned);
   const lsgp::Progress tell = to_progress(progress);
   const auto wanted = choose<lsgp::PatchShape>(shape, {{"grid", lsgp::PatchShape::grid},
                                                        {"even-grid", lsgp::PatchShape::even_grid},
                                                        {"strip", lsgp::PatchShape::strip},
                                                        {"rectangle", lsgp::PatchShape::rectangle}});
-  const lsgp::ShapedMap shaped =
-      without_gil([&] { return lsgp::shape_patches(surface, uv, chosen, wanted, at, fixed, tell); });
+  const lsgp::ShapeRequest request{to_vector("triangles", triangles), wanted, to_vector("corners", corners),
+                                   to_vector("pinned", pinned)};
+  const lsgp::ShapedMap shaped = without_gil([&] { return lsgp::shape_patches(surface, uv, request, tell); });
   py::dict out;
   out["corner_uv"] = to_array(shaped.corner_uv.data(), {static_cast<py::ssize_t>(shaped.corner_uv.rows() / 3), 3, 2});
   out["moved"] = to_array(shaped.moved);

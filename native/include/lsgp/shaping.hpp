@@ -18,6 +18,15 @@ enum class PatchShape {
   rectangle,  // of a disk: its boundary straight between four corners, with the lengths that it has on the surface
 };
 
+struct ShapeRequest {
+  std::vector<Index> triangles;  // whose patches get the shape
+  PatchShape shape = PatchShape::grid;
+  // Of rectangles, vertices: those on the boundary of a patch, which have to be four; none there: where it turns most.
+  std::vector<Index> corners;
+  // Corners 3 * triangle + corner that stay where they are; patches whose pins do not permit the shape do not get it.
+  std::vector<Index> pinned;
+};
+
 struct ShapedMap {
   CornerUv corner_uv;             // (3m, 2)
   std::vector<Index> moved;       // triangles with other coordinates, in order
@@ -29,12 +38,9 @@ struct ShapedMap {
 // and the middle that they have, and turned as little as that takes. The other triangles of their islands follow with
 // least stretch. Quads are as of `find_tubes`.
 //
-// corner_uv: (3m, 2); triangles with a coordinate that is not finite have no island. corners: of rectangles, vertices:
-// those on the boundary of a patch, which have to be four; none there: where it turns most. pinned: corners
-// 3 * triangle + corner that stay where they are; patches whose pins do not permit the shape do not get it.
-// Throws SHAPE_IMPOSSIBLE where no patch gets the shape, and what `measure_distortion` throws.
-LSGP_API ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles,
-                                 PatchShape shape, const std::vector<Index>& corners = {},
-                                 const std::vector<Index>& pinned = {}, const Progress& progress = {});
+// corner_uv: (3m, 2); triangles with a coordinate that is not finite have no island. Throws SHAPE_IMPOSSIBLE where no
+// patch gets the shape, and what `measure_distortion` throws.
+LSGP_API ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const ShapeRequest& request,
+                                 const Progress& progress = {});
 
 }  // namespace lsgp

@@ -30,8 +30,7 @@ constexpr double pin_tolerance = 1e-5;
 // The map, changed patch by patch and island by island.
 class Shaping {
  public:
-  Shaping(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles,
-          const std::vector<Index>& corners, const std::vector<Index>& pinned)
+  Shaping(const Surface& surface, const CornerUv& corner_uv, const ShapeRequest& request)
       : copies_(copies_of_map(surface, corner_uv)),
         is_chosen_(surface.triangles.rows(), 0),
         is_corner_(surface.positions.rows(), 0),
@@ -39,9 +38,9 @@ class Shaping {
         patch_of_(surface.triangles.rows(), none),
         before_(corner_uv) {
     out_.corner_uv = corner_uv;
-    for (const Index f : triangles) is_chosen_[f] = 1;
-    for (const Index v : corners) is_corner_[v] = 1;
-    for (const Index corner : pinned) is_pinned_[corner] = 1;
+    for (const Index f : request.triangles) is_chosen_[f] = 1;
+    for (const Index v : request.corners) is_corner_[v] = 1;
+    for (const Index corner : request.pinned) is_pinned_[corner] = 1;
   }
 
   ShapedMap shaped(PatchShape shape, ProgressMonitor& monitor) {
@@ -312,8 +311,7 @@ void require_indices(const char* what, const std::vector<Index>& indices, Eigen:
 
 }  // namespace
 
-ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles,
-                        PatchShape shape, const std::vector<Index>& corners, const std::vector<Index>& pinned,
+ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const ShapeRequest& request,
                         const Progress& progress) try {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
@@ -322,10 +320,10 @@ ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const
     throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
                                               surface.triangles.size(), " corners of triangles. Give one for each."));
   }
-  require_indices("triangle", triangles, surface.triangles.rows());
-  require_indices("vertex", corners, surface.positions.rows());
-  require_indices("corner", pinned, surface.triangles.size());
-  ShapedMap out = Shaping(surface, corner_uv, triangles, corners, pinned).shaped(shape, monitor);
+  require_indices("triangle", request.triangles, surface.triangles.rows());
+  require_indices("vertex", request.corners, surface.positions.rows());
+  require_indices("corner", request.pinned, surface.triangles.size());
+  ShapedMap out = Shaping(surface, corner_uv, request).shaped(request.shape, monitor);
   monitor.advance(1);
   return out;
 } catch (const Error& error) {
