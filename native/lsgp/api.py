@@ -280,7 +280,8 @@ def cut_costs(
 
     front: (3,), the direction from the surface to the viewer; cuts are hidden from the views around it: a cost is
         0.1 + 30 s³ where a share s of the views sees the edge. None: visibility has no effect.
-    creases: costs fall to 0.12 of that along edges where the surface bends by 50 degrees or more, not below 30.
+    creases: costs fall to 0.12 of that, and what sight adds once more as much, along edges where the surface bends by
+        50 degrees or more, not below 30.
     sharp: (s, 2) int32, edges that are creases whatever their angle.
     paint: (n,) float64, from 0 at vertices that attract cuts, for a tenth of the cost, to 1 at vertices that repel
         them, for ten times the cost. None: no effect.

@@ -141,11 +141,22 @@ TEST_CASE("nothing is made that another map outdoes") {
   const std::vector<Told> told{{0.0, 3.0}, {2.5, 1.0}};
   Trial trial;
   {
-    const Objective::Bound bound(trial.objective, 2);
+    Quality rival;
+    rival.stretch = 2;
+    const Objective::Bound bound(trial.objective, rival);
     CHECK(trial.choose(told) == 0);
     CHECK(trial.made == std::vector<std::size_t>{0});
   }
   CHECK(trial.choose(told) == 1);
+}
+
+TEST_CASE("a map beyond all is made where nothing else can be, and not beside another map") {
+  const std::vector<Told> told{{0.0, {}}, {Objective::infinity, 3.0}};
+  Trial trial;
+  CHECK(trial.choose(told) == 1);
+  const Objective::Bound bound(trial.objective, Quality{});
+  CHECK_THROWS_WITH_AS(trial.choose(told), "0", Error);
+  CHECK(trial.made == std::vector<std::size_t>{0, 1, 0});
 }
 
 TEST_CASE("where none can be made the last one says why") {

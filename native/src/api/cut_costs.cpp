@@ -91,7 +91,9 @@ void require_preferences(const Surface& surface, const CutPreferences& preferenc
 
 Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences, const Progress& progress) try {
   // Hidden cuts are short as well. A cut in full sight costs as much as 300 times its length behind, so that only one
-  // without a way around crosses the front; at an outline, which half of the views see, it is 40 times.
+  // without a way around crosses the front; at an outline, which half of the views see, it is 40 times. A crease is
+  // where one looks for a cut, also in front: what sight adds is less there once more, so that an outline along a
+  // crease is cheaper than a smooth back.
   constexpr double hidden = 0.1, in_full_sight = 30;
   constexpr double decades = 2;  // between paint of 0 and of 1
   StageSeconds seconds;
@@ -99,16 +101,16 @@ Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferen
   require_valid(surface);
   require_preferences(surface, preferences);
   const VertexPairs& edges = *surface.edges;
-  Eigen::VectorXd out = Eigen::VectorXd::Ones(edges.rows());
+  Eigen::VectorXd crease = Eigen::VectorXd::Ones(edges.rows());
+  if (preferences.creases || preferences.sharp.rows() > 0) crease = crease_factors(surface, preferences);
+  Eigen::VectorXd out = crease;
   if (preferences.front) {
     Positions middle(edges.rows(), 3);
     for (Index row = 0; row < edges.rows(); ++row) {
       middle.row(row) = (surface.positions.row(edges(row, 0)) + surface.positions.row(edges(row, 1))) / 2;
     }
-    out = hidden + in_full_sight * visible_share(surface, middle, *preferences.front).array().cube();
-  }
-  if (preferences.creases || preferences.sharp.rows() > 0) {
-    out.array() *= crease_factors(surface, preferences).array();
+    const Eigen::ArrayXd seen = visible_share(surface, middle, *preferences.front).array().cube();
+    out.array() *= hidden + in_full_sight * seen * crease.array();
   }
   if (preferences.paint.size() > 0) {
     for (Index row = 0; row < edges.rows(); ++row) {

@@ -52,7 +52,8 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   std::exception_ptr failure;
   while (const std::optional<Estimate> next = most_promising(candidates)) {
     const double bound = rank.has_defects() ? this->bound() : std::min(rank.cost, this->bound());
-    if ((best || failure) && next->cost - error_of_estimates >= bound) break;
+    const bool is_first = !best && !failure;
+    if (!is_first && bound < infinity && next->cost - error_of_estimates >= bound) break;
     const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
     const Candidate candidate = std::move(*place);
     candidates.erase(place);
