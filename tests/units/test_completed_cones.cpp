@@ -109,7 +109,7 @@ TEST_CASE("the usual layout is made once where cones for creases admit none") {
   };
   Objective objective({}, {});
   SymmetryChoice others(surface, maps, given, Symmetry::not_tried, objective);
-  const Made made = FeatureMaps(surface.parts, maps, tile).best_on_lattice(refused, others, {});
+  const Made made = FeatureMaps(surface.parts, maps, tile, objective).best_on_lattice(refused, others, {});
   const std::size_t count = usual.cones.vertices.size();
   CHECK(tried == std::vector<std::size_t>{1, count, count});  // the last one with its creases along the lattice
   CHECK(made->cones.cones.vertices == usual.cones.vertices);
