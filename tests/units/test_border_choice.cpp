@@ -77,7 +77,7 @@ TEST_CASE("progress ends at one where the map with borders fails") {
     cones.cones = {{0, 1, 2, 3}, {{}, {}, {}, {}}};
     return maps_of(surface, no_pins)(cones, {}, progress);
   };
-  const Made best = best_at_creases(surfaces, corner(), make, objective, [&](double done) {
+  const Made best = best_at_creases(surfaces, {{}, corner()}, make, objective, [&](double done) {
     told.push_back(done);
     return true;
   });
@@ -95,6 +95,21 @@ TEST_CASE("components end at all their creases where there is no map without") {
     if (surface == surfaces.first()) throw Error(Code::solver_failed, "It failed.");
     return maps_of(surface, no_pins)({}, {}, progress);
   };
-  const Made best = best_at_creases(surfaces, corner(), make, objective, {});
+  const Made best = best_at_creases(surfaces, {{}, corner()}, make, objective, {});
   CHECK(best->surface->surface().borders == corner());
+}
+
+TEST_CASE("where creases carry all curvature the map that ends there is made first, and once") {
+  BorderedSurfaces surfaces(tetrahedron());
+  const Pins no_pins;
+  Objective objective({}, {});
+  std::vector<bool> ends;
+  const auto make = [&](const std::shared_ptr<BorderedSurface>& surface, const Progress& progress) {
+    ends.push_back(surface != surfaces.first());
+    if (!ends.back()) throw Error(Code::angles_impossible, "There are none.");
+    return maps_of(surface, no_pins)({}, {}, progress);
+  };
+  const Made best = best_at_creases(surfaces, {{}, corner(), true}, make, objective, {});
+  CHECK(best->surface->surface().borders == corner());
+  CHECK(ends == std::vector<bool>{true, false});
 }
