@@ -6,13 +6,17 @@ Nothing here is shared with the library or the oracle.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
+from itertools import combinations
 
 import lsgp
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse import csgraph
+
+SAME_LENGTH = 1e-6  # relative: sides of a cut
 
 
 def named_by(result: lsgp.Result, code: str) -> NDArray[np.int32]:
@@ -37,7 +41,8 @@ def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer]) -> NDArray[np.int6
 
 @dataclass
 class Opened:
-    """The solved triangles, turned alike, each double only once, glued where exactly two of them meet along an edge.
+    """The solved triangles, turned alike, each double only once, glued where two of them meet along an edge and, where
+    more do, those of them that are one sheet.
 
     triangle: (m,) their numbers.  z: (3m) u + iv.  vertex: (3m) of the surface.  twin: (3m) opposite halfedge or -1.
     fan: (3m) corners around one vertex share a number.  closed: (fans,) whether the triangles go all the way round.
@@ -87,15 +92,18 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     h = np.arange(len(vertex))
     tail, head = vertex, vertex[next_corner(h)]
     key = edge_keys(tail, head)
-    # Triangles without a map count: with them more than two may meet, and then the edge is open.
+    # Triangles without a map count: with them more than two may meet.
     everyone = surface.triangles[single]
     keys, meeting = np.unique(edge_keys(everyone.ravel(), everyone[:, [1, 2, 0]].ravel()), return_counts=True)
-    borders = np.union1d(_borders_inside(surface, result, options), keys[meeting > 2])
+    borders, crowded = _borders_inside(surface, result, options), keys[meeting > 2]
     by_edge = np.argsort(key, kind="stable")
     first, count = np.unique(key[by_edge], return_index=True, return_counts=True)[1:]
     one, other = by_edge[first[count == 2]], by_edge[first[count == 2] + 1]
-    glued = (tail[one] == head[other]) & ~np.isin(key[one], borders)
-    one, other = one[glued], other[glued]
+    glued = (tail[one] == head[other]) & ~np.isin(key[one], np.union1d(borders, crowded))
+    z = (uv[..., 0] + 1j * uv[..., 1]).ravel()
+    inside = np.flatnonzero(np.isin(key, crowded) & ~np.isin(key, borders))
+    running_on = _running_on(surface.positions, result, inside, vertex, z)
+    one, other = np.concatenate([one[glued], running_on[:, 0]]), np.concatenate([other[glued], running_on[:, 1]])
     twin = np.full(len(h), -1)
     twin[one], twin[other] = other, one
     fan = labels(np.concatenate([one, next_corner(one)]), np.concatenate([next_corner(other), other]), len(h))
@@ -103,7 +111,48 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     rim = twin < 0
     closed[fan[rim]] = closed[fan[next_corner(h)[rim]]] = False
     component = labels(one // 3, other // 3, len(triangle))
-    return Opened(triangle, (uv[..., 0] + 1j * uv[..., 1]).ravel(), vertex, twin, fan, closed, component)
+    return Opened(triangle, z, vertex, twin, fan, closed, component)
+
+
+def _running_on(
+    positions: NDArray[np.float64],
+    result: lsgp.Result,
+    h: NDArray[np.int64],
+    vertex: NDArray[np.int64],
+    z: NDArray[np.complex128],
+) -> NDArray[np.int64]:
+    """(p, 2) Which of the halfedges h, at edges of three or more triangles, are two sides of one sheet.
+
+    Seen from the map: two sides with the same coordinates.  What the map cuts there it lists, once for each sheet: of
+    the sides left, two of the same length, as sides of a cut have, and of several such, those that bend least."""
+    cuts = Counter(edge_keys(*result.cut_edges.T).tolist())
+    by_edge: dict[int, list[int]] = {}
+    for side, key in zip(h.tolist(), edge_keys(vertex[h], vertex[next_corner(h)]).tolist(), strict=True):
+        by_edge.setdefault(key, []).append(side)
+    ahead, after, place = next_corner(np.arange(len(z))), next_corner(next_corner(np.arange(len(z)))), positions[vertex]
+
+    def differ(a: int, b: int) -> bool:
+        one, other = abs(z[ahead[a]] - z[a]), abs(z[ahead[b]] - z[b])
+        return bool(abs(one - other) > SAME_LENGTH * max(one, other))
+
+    def bend(a: int, b: int) -> float:
+        along = place[ahead[a]] - place[a]
+        normals = [np.cross(along, place[after[side]] - place[a]) for side in (a, b)]
+        return float(np.arctan2(np.linalg.norm(np.cross(*normals)), -normals[0] @ normals[1]))
+
+    pairs: list[tuple[int, int]] = []
+    for key, sides in by_edge.items():
+        opposite = [(a, b) for a, b in combinations(sides, 2) if vertex[a] == vertex[ahead[b]]]
+        together = [(a, b) for a, b in opposite if z[a] == z[ahead[b]] and z[ahead[a]] == z[b]]
+        apart = sorted(set(opposite) - set(together), key=lambda pair: (differ(*pair), bend(*pair)))
+        taken: set[int] = set()
+        for candidates, most in ((together, len(together)), (apart, cuts[key])):
+            for pair in candidates:
+                if most > 0 and taken.isdisjoint(pair):
+                    pairs.append(pair)
+                    taken.update(pair)
+                    most -= 1
+    return np.array(pairs, np.int64).reshape(-1, 2)
 
 
 def _borders_inside(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:

@@ -14,6 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from map_checks import codes
 from meshes import FloatArray, IndexArray, Mesh
+from opened_surface import open_surface
+from outcome_check import result_faults
 
 Sheets = set[frozenset[frozenset[int]]]
 Soup = Callable[[Mesh, float, int], Mesh]
@@ -263,3 +265,14 @@ def test_soups_are_unwrapped_with_no_more_islands_than_sheets(kind: str, make: S
     spatial = oracle.triangle_areas(mesh.positions, mesh.triangles)
     if share > 0:
         assert density[0] / density[1] == pytest.approx(spatial[:count].sum() / spatial[count:].sum(), rel=0.1)
+
+
+@pytest.mark.parametrize("share", [0.1, 1.0])
+def test_maps_of_bodies_with_fins_have_the_sheets_of_the_ledger(share: float) -> None:
+    """Also where cuts cross the fins: they are sides of one sheet there, of the same length."""
+    mesh = finned(meshes.bumpy_sphere(3), share, 2)
+    surface, options = lsgp.Surface(mesh.positions, mesh.triangles), lsgp.Options()
+    result = lsgp.parameterize(surface, lsgp.place_cones(surface, count=6).cones, None, options)
+    assert result_faults(surface, result, options) == []
+    component = open_surface(surface, result, options).component
+    assert sorted(np.bincount(component)) == sizes(mesh)
