@@ -102,7 +102,7 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     glued = (tail[one] == head[other]) & ~np.isin(key[one], np.union1d(borders, crowded))
     z = (uv[..., 0] + 1j * uv[..., 1]).ravel()
     inside = np.flatnonzero(np.isin(key, crowded) & ~np.isin(key, borders))
-    running_on = _running_on(surface.positions, result, inside, vertex, z)
+    running_on = _running_on(surface, result, inside, vertex, z)
     one, other = np.concatenate([one[glued], running_on[:, 0]]), np.concatenate([other[glued], running_on[:, 1]])
     twin = np.full(len(h), -1)
     twin[one], twin[other] = other, one
@@ -115,7 +115,7 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
 
 
 def _running_on(
-    positions: NDArray[np.float64],
+    surface: lsgp.Surface,
     result: lsgp.Result,
     h: NDArray[np.int64],
     vertex: NDArray[np.int64],
@@ -124,12 +124,13 @@ def _running_on(
     """(p, 2) Which of the halfedges h, at edges of three or more triangles, are two sides of one sheet.
 
     Seen from the map: two sides with the same coordinates.  What the map cuts there it lists, once for each sheet: of
-    the sides left, two of the same length, as sides of a cut have, and of several such, those that bend least."""
+    the sides left, two of the same length, as sides of a cut have, and of several such, those that bend least.  An edge
+    that is marked is listed once more if two sides or more end there."""
     cuts = Counter(edge_keys(*result.cut_edges.T).tolist())
     by_edge: dict[int, list[int]] = {}
     for side, key in zip(h.tolist(), edge_keys(vertex[h], vertex[next_corner(h)]).tolist(), strict=True):
         by_edge.setdefault(key, []).append(side)
-    ahead, after, place = next_corner(np.arange(len(z))), next_corner(next_corner(np.arange(len(z)))), positions[vertex]
+    ahead, place = next_corner(np.arange(len(z))), surface.positions[vertex]
 
     def differ(a: int, b: int) -> bool:
         one, other = abs(z[ahead[a]] - z[a]), abs(z[ahead[b]] - z[b])
@@ -137,16 +138,21 @@ def _running_on(
 
     def bend(a: int, b: int) -> float:
         along = place[ahead[a]] - place[a]
-        normals = [np.cross(along, place[after[side]] - place[a]) for side in (a, b)]
+        normals = [np.cross(along, place[ahead[ahead[side]]] - place[a]) for side in (a, b)]
         return float(np.arctan2(np.linalg.norm(np.cross(*normals)), -normals[0] @ normals[1]))
 
+    marked = set(edge_keys(*surface.seams.T).tolist())
     pairs: list[tuple[int, int]] = []
     for key, sides in by_edge.items():
         opposite = [(a, b) for a, b in combinations(sides, 2) if vertex[a] == vertex[ahead[b]]]
         together = [(a, b) for a, b in opposite if z[a] == z[ahead[b]] and z[ahead[a]] == z[b]]
         apart = sorted(set(opposite) - set(together), key=lambda pair: (differ(*pair), bend(*pair)))
         taken: set[int] = set()
-        for candidates, most in ((together, len(together)), (apart, cuts[key])):
+        cut = cuts[key]
+        if key in marked:
+            apart = [pair for pair in apart if not differ(*pair)]
+            cut -= len(sides) - 2 * (len(together) + cut) >= 2
+        for candidates, most in ((together, len(together)), (apart, cut)):
             for pair in candidates:
                 if most > 0 and taken.isdisjoint(pair):
                     pairs.append(pair)
