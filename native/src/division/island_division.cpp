@@ -22,8 +22,9 @@ constexpr double small_island = 0.02, smallest_share = 0.1;
 constexpr Index few_faces = 4;
 // How far the texel density of a piece may differ from that of all islands, relative to how far that of faces does.
 constexpr double most_uneven = 0.5, hardly_uneven = 0.01;
-// Islands that occupy more than this multiple of their area are divided all the same.
-constexpr double wasteful = 4;
+// Of islands that occupy more than a multiple of their area, as much for each further multiple: the more they leave
+// empty, the less the difference matters.
+constexpr double wasteful = 4, uneven_if_wasteful = 0.05;
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
 // each additional island.
 constexpr double price_of_cut = 0.15, price_of_island = 0.01;
@@ -62,8 +63,8 @@ double DivisionSearch::least_gain() const { return price_factor_ * price_of_isla
 bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& island) const {
   const double unevenness = std::abs(std::log(piece.map_area / piece.area));
   const bool is_even = unevenness <= std::max(hardly_uneven, most_uneven * island.unevenness);
-  const bool is_wasteful = std::isfinite(unevenness) && island.demand > wasteful * island.area;
-  if (!is_even && !is_wasteful) return false;
+  const bool is_worth_it = unevenness * island.area <= uneven_if_wasteful * (island.demand - wasteful * island.area);
+  if (!is_even && !is_worth_it) return false;
   if (island.area < small_island * area_) return piece.area >= smallest_share * island.area;
   if (island.is_long && piece.area >= smallest_of_long * area_ && piece.faces > few_faces) return true;
   const bool is_scrap = piece.faces <= few_faces && piece.ends_smoothly;

@@ -81,7 +81,7 @@ class DivisionSearch {
   double demand(const Array<Complex>& hull) const { return describe(0, hull).demand; }
 
   // Whether a piece of an island is large enough, not a scrap of few faces, and has about the texel density of all,
-  // which does not matter where the island leaves most of what it occupies empty. Pieces of few faces may be as small
+  // which matters the less, the more the island leaves empty of what it occupies. Pieces of few faces may be as small
   // as others only on hard surfaces, where all their cuts follow sharp edges, and on narrow islands. Of long islands
   // also smaller pieces may be cut off: a thin tail keeps everything else small.
   bool may_be_cut_off(const Piece& piece, const WholeIsland& island) const;
