@@ -99,11 +99,16 @@ def test_pinned_islands_may_stick_out_of_the_square(shift):
     assert covered_twice([first, second]) == 0
 
 
+# A cube that is cut where the front does not see it is a net of three faces by four: such a one and the grid fill less
+# than a fifth of these images.
+@pytest.mark.parametrize(("add_second", "least"), [(add_cone_cube, 0.0), (add_grid, 0.3)])
 @pytest.mark.parametrize("wide", [True, False])
-def test_islands_are_not_distorted_on_images_that_are_no_squares(wide):
-    parts = [add_grid("First"), add_cone_cube("Second")]
+def test_islands_are_not_distorted_on_images_that_are_no_squares(wide, add_second, least):
+    parts = [add_grid("First"), add_second("Second")]
     parts[0].select_set(True)
     size = (256, 64) if wide else (64, 256)
+    unwrap()
+    in_square = sum(area(UvMap(part)) for part in parts)
     for part in parts:
         add_texture(part, *size)
     unwrap()
@@ -113,8 +118,8 @@ def test_islands_are_not_distorted_on_images_that_are_no_squares(wide):
         corners = (uv_map.uv * np.array(size) / 256)[uv_map.triangles]
         sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
         assert (sides.max(axis=1) / sides.min(axis=1)).max() == pytest.approx(2**0.5, rel=1e-4)
-    # More than a square inside the image could have.
-    assert sum(area(uv_map) for uv_map in maps) > 0.3
+    # More than they have, or more than anything could have, in a square inside the image.
+    assert sum(map(area, maps)) > max(1.2 * in_square / 4, least)
 
 
 def test_images_of_several_shapes_share_the_square():
