@@ -104,7 +104,7 @@ class SheetMatching {
 
   // The clearest junctions first: what they join is one part for the others.
   void choose() {
-    merged_ = UnionFind(ssize(joined_.orientable));
+    merged_ = UnionFind(static_cast<Index>(joined_.orientable.size()));
     Array<std::pair<double, Index>> order;
     for (Index i = 0; i < ssize(junctions_); ++i) order.emplace_back(candidates(junctions_[i]).front().cost, i);
     std::sort(order.begin(), order.end());
@@ -135,7 +135,7 @@ class SheetMatching {
 
   // Joins the chosen pairs, those first that turn nothing inside out.
   void join() {
-    TurnedUnion parts(ssize(joined_.orientable));
+    TurnedUnion parts(static_cast<Index>(joined_.orientable.size()));
     for (const bool turned : {false, true}) {
       for (const SheetJunction& junction : junctions_) {
         for (const SheetPair& pair : junction.pairs) {
@@ -165,9 +165,9 @@ class SheetMatching {
     }
     std::sort(out.sides.begin(), out.sides.end(),
               [](const SheetSide& a, const SheetSide& b) { return a.opposite < b.opposite; });
-    crowded_of_edge_[edge] = ssize(crowded_);
+    crowded_of_edge_[edge] = static_cast<Index>(crowded_.size());
     first_side_.push_back(side_count_);
-    side_count_ += ssize(out.sides);
+    side_count_ += static_cast<Index>(out.sides.size());
     crowded_.push_back(std::move(out));
   }
 
@@ -201,7 +201,7 @@ class SheetMatching {
       const Index leads_to = crowded_of_edge_[edges_.edge_of(at)];
       if (leads_to == crowded || (other != none && leads_to != other)) return;
       other = leads_to;
-      reached.emplace_back(ssize(reached), side_at(other, at));
+      reached.emplace_back(static_cast<Index>(reached.size()), side_at(other, at));
     }
     if (crowded_[other].sides.size() != from.sides.size()) return;
     junctions.unite(crowded, other);
@@ -209,7 +209,7 @@ class SheetMatching {
   }
 
   void find_junctions() {
-    UnionFind junctions(ssize(crowded_)), sheets(side_count_);
+    UnionFind junctions(static_cast<Index>(crowded_.size())), sheets(side_count_);
     for (Index i = 0; i < ssize(crowded_); ++i) {
       const Index h = edges_.halfedge(crowded_[i].edge, 0);
       for (const Index vertex : {corners()[h], corners()[next(h)]}) link(i, vertex, junctions, sheets);
@@ -233,7 +233,7 @@ class SheetMatching {
 
   // False if a sheet comes back to an edge as another one.
   bool order_sheets(SheetJunction& junction, UnionFind& sheets) const {
-    const Index first = junction.crowded.front(), count = ssize(crowded_[first].sides);
+    const Index first = junction.crowded.front(), count = static_cast<Index>(crowded_[first].sides.size());
     Array<SheetPair> order;
     for (Index k = 0; k < count; ++k) order.emplace_back(sheets.find(first_side_[first] + k), k);
     std::sort(order.begin(), order.end());
@@ -311,7 +311,7 @@ class SheetMatching {
 
   // Of all pairs of sheets the mean over the edges by their length, the cheapest first.
   Array<PairOfSheets> candidates(const SheetJunction& junction) {
-    const Index count = ssize(junction.side_of_sheet.front());
+    const Index count = static_cast<Index>(junction.side_of_sheet.front().size());
     double length = 0;
     for (const Index i : junction.crowded) length += crowded_[i].length;
     Array<PairOfSheets> out;
