@@ -15,6 +15,7 @@ from ..base.arguments import FloatArray, IndexArray
 from ..base.equality import EqualByContent
 from ..base.places import lowest_linked
 from ..base.short_repr import ShortRepr
+from ..base.unique_rows import unique_rows
 from ..edge_directions import sides_of_edges
 from ..lattice import island_boxes
 from ..surface import Surface, require_vertices
@@ -237,7 +238,7 @@ def _joints(
     vertex = surface.triangles.ravel()
     places = np.concatenate([vertex[first][..., None], low[:, None, None] + 0 * first[..., None], flat[first]], axis=-1)
     places = np.concatenate([places, high[:, None, None] + 0 * first[..., None], flat[second]], axis=-1)
-    node = np.unique(places.reshape(-1, places.shape[-1]), axis=0, return_inverse=True)[1].reshape(-1, 2)
+    node = unique_rows(places.reshape(-1, places.shape[-1])).index.reshape(-1, 2)
     chain = lowest_linked(node, int(node.max(initial=-1)) + 1)[node[:, 0]]
     rows = row[at[cut, 0]]
     z = flat[:, 0] + 1j * flat[:, 1]

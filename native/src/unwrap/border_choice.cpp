@@ -97,8 +97,10 @@ Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, c
   {
     std::optional<Objective::Bound> bound;
     if (creases.carry_all) {
-      // Without borders there are cones at all corners, which takes far longer.
+      // Without borders there are cones at all corners, which takes far longer. A component that has cones in spite of
+      // its borders, or none of them, may be better off without: then each is compared by itself.
       ended = attempt([&] { return make(surfaces.ending_at(possible), share_of(progress, 0, 0)); });
+      if (ended && !ended->result.cones.empty()) ended.reset();
       if (ended) bound.emplace(objective, objective.quality(*ended, share_of(progress, 0, 0)));
     }
     try {

@@ -42,10 +42,12 @@ def row_of(grid, segments=6, row=2):
 
 
 def pin(obj, vertices):
-    layer = obj.data.uv_layers.active
+    name = f".pn.{obj.data.uv_layers.active.name}"
+    attributes = obj.data.attributes
+    pinned = attributes.get(name) or attributes.new(name, "BOOLEAN", "CORNER")
     for loop in obj.data.loops:
         if loop.vertex_index in vertices:
-            layer.pin[loop.index].value = True
+            pinned.data[loop.index].value = True
 
 
 def face_uv(obj, faces):
