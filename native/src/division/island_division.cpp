@@ -20,8 +20,9 @@ constexpr double smallest_piece = 0.01, smallest_of_few = 0.06, smallest_of_long
 // Of islands that are smaller than this, only long and narrow ones are divided; pieces are at least a share of them.
 constexpr double small_island = 0.02, smallest_share = 0.1;
 constexpr Index few_faces = 4;
-// How far the texel density of a piece may differ from that of all islands, relative to how far that of faces does.
-constexpr double most_uneven = 0.5, hardly_uneven = 0.01;
+// How far the texel density of a piece may differ from that of all islands, relative to how far that of faces does;
+// in area, and at most so far that sides of texels of two pieces differ by a twentieth.
+constexpr double most_uneven = 0.5, hardly_uneven = 0.01, clearly_uneven = 0.05;
 // Of islands that occupy more than a multiple of their area, as much for each further multiple: the more they leave
 // empty, the less the difference matters.
 constexpr double wasteful = 4, uneven_if_wasteful = 0.05;
@@ -62,7 +63,7 @@ double DivisionSearch::least_gain() const { return price_factor_ * price_of_isla
 
 bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& island) const {
   const double unevenness = std::abs(std::log(piece.map_area / piece.area));
-  const bool is_even = unevenness <= std::max(hardly_uneven, most_uneven * island.unevenness);
+  const bool is_even = unevenness <= std::clamp(most_uneven * island.unevenness, hardly_uneven, clearly_uneven);
   const bool is_worth_it = unevenness * island.area <= uneven_if_wasteful * (island.demand - wasteful * island.area);
   if (!is_even && !is_worth_it) return false;
   if (island.area < small_island * area_) return piece.area >= smallest_share * island.area;
