@@ -193,8 +193,9 @@ def _call(
         return lsgp.parameterize(surface, cones, angles if manual else None, options)
     count = int(step["cones"].removeprefix("auto:")) if ":" in step["cones"] else None
     lattice = None if options.seamless is None else options.seamless.lattice
-    placed = lsgp.place_cones(surface, count=count, lattice=lattice, seams=options.seams)
-    as_placed = options.prescription is None and options.border == "free"
+    # Cones are placed for the borders of the map; straight ones want other angles than placement gives.
+    placed = lsgp.place_cones(surface, count=count, lattice=lattice, seams=options.seams, border=options.border)
+    as_placed = options.prescription is None and options.border != "straight"
     return lsgp.parameterize(surface, placed.cones, placed.cone_angles if as_placed else None, options)
 
 
