@@ -265,12 +265,16 @@ def prescription_faults(surface: lsgp.Surface, prescription: lsgp.Prescription) 
 
 
 def cuts_faults(surface: lsgp.Surface, cuts: lsgp.CutPaths) -> list[str]:
-    """Cuts are edges of the surface, each once, and their paths are made of just these."""
+    """Cuts are edges of the surface, each once, or once for each two triangles of several sheets; paths are made
+    of just these."""
     faults = []
     keys = edge_keys(*cuts.edges.T)
-    own = edge_keys(surface.triangles.ravel(), surface.triangles[:, [1, 2, 0]].ravel())
-    if len(np.unique(keys)) != len(keys) or not np.isin(keys, own).all():
-        faults.append("cuts are not edges of the surface, each once")
+    own, meeting = np.unique(
+        edge_keys(surface.triangles.ravel(), surface.triangles[:, [1, 2, 0]].ravel()), return_counts=True
+    )
+    cut, times = np.unique(keys, return_counts=True)
+    if not np.isin(cut, own).all() or (times > meeting[np.isin(own, cut)] // 2).any():
+        faults.append("cuts are not edges of the surface, each once on a sheet")
     steps = [edge_keys(path[:-1], path[1:]) for path in cuts.paths]
     along = np.sort(np.concatenate(steps)) if steps else np.empty(0, np.int64)
     if not np.array_equal(along, np.sort(keys)):

@@ -165,7 +165,8 @@ class Result(EqualByContent, ShortRepr):
     solved: (m,) bool.
     island: (m,) int32, the island of each triangle, -1 where not solved.
     cut_edges: (c, 2) int32 vertex pairs along which the layout is open, without mesh boundaries; on components with
-        cones, seams that end in the interior are included, although their two sides coincide.
+        cones, seams that end in the interior are included, although their two sides coincide. Where several sheets
+        cross at an edge it is listed once for each that is cut there.
     required_cuts: (r, 2) int32, those of them that cones, handles and boundaries need, also along seams; the others are
         seams, or split overlaps and islands.
     borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
@@ -243,8 +244,8 @@ class Result(EqualByContent, ShortRepr):
 class CutPaths(EqualByContent, ShortRepr):
     """Cuts that open a surface into disks through its cones (the paper's section 4.1).
 
-    edges: (c, 2) int32 vertex pairs. paths: the cuts, each an int32 array of vertices from node to node; nodes are
-    cones, junctions and points of the boundary.
+    edges: (c, 2) int32 vertex pairs; where several sheets cross at an edge, once for each that is cut there. paths: the
+    cuts, each an int32 array of vertices from node to node; nodes are cones, junctions and points of the boundary.
     """
 
     edges: IndexArray

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from map_checks import codes
 from meshes import FloatArray, IndexArray, Mesh
 from opened_surface import open_surface
-from outcome_check import result_faults
+from outcome_check import cuts_faults, result_faults
 
 Sheets = set[frozenset[frozenset[int]]]
 Soup = Callable[[Mesh, float, int], Mesh]
@@ -276,3 +276,16 @@ def test_maps_of_bodies_with_fins_have_the_sheets_of_the_ledger(share: float) ->
     assert result_faults(surface, result, options) == []
     component = open_surface(surface, result, options).component
     assert sorted(np.bincount(component)) == sizes(mesh)
+
+
+def test_an_edge_at_which_two_sheets_cross_is_a_cut_of_each() -> None:
+    mesh = book([0, np.pi / 2, np.pi, 3 * np.pi / 2])
+    surface = lsgp.Surface(mesh.positions, mesh.triangles)
+    cone = 2  # in the middle of the back, on both sheets
+    along = lsgp.Surface(mesh.positions, mesh.triangles, edges=[[0, 1], [1, cone]])
+    cuts = lsgp.find_cuts(along, [cone])
+    assert cuts_faults(surface, cuts) == []
+    assert sorted(np.sort(cuts.edges, axis=1).tolist()) == [[0, 1], [0, 1], [1, cone], [1, cone]]
+    result = lsgp.parameterize(along, [cone], [np.pi])
+    assert sorted(np.sort(result.cut_edges, axis=1).tolist()) == [[0, 1], [0, 1], [1, cone], [1, cone]]
+    assert result_faults(along, result, lsgp.Options()) == []
