@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csgraph
 
 SAME_LENGTH = 1e-6  # relative: sides of a cut
+NO_HEIGHT = 1e-9  # over the length of a side: such a triangle bends no way
+FOLDED = 3 * np.pi / 4  # radians of bending
 
 
 def named_by(result: lsgp.Result, code: str) -> NDArray[np.int32]:
@@ -102,7 +104,8 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     glued = (tail[one] == head[other]) & ~np.isin(key[one], np.union1d(borders, crowded))
     z = (uv[..., 0] + 1j * uv[..., 1]).ravel()
     inside = np.flatnonzero(np.isin(key, crowded) & ~np.isin(key, borders))
-    running_on = _running_on(surface, result, inside, vertex, z)
+    part = _parts(surface, result, options)[triangle]
+    running_on = _running_on(surface, result, inside, vertex, z, part)
     one, other = np.concatenate([one[glued], running_on[:, 0]]), np.concatenate([other[glued], running_on[:, 1]])
     twin = np.full(len(h), -1)
     twin[one], twin[other] = other, one
@@ -120,17 +123,21 @@ def _running_on(
     h: NDArray[np.int64],
     vertex: NDArray[np.int64],
     z: NDArray[np.complex128],
+    part: NDArray[np.int64],
 ) -> NDArray[np.int64]:
     """(p, 2) Which of the halfedges h, at edges of three or more triangles, are two sides of one sheet.
 
     Seen from the map: two sides with the same coordinates.  What the map cuts there it lists, once for each sheet: of
-    the sides left, two of the same length, as sides of a cut have, and of several such, those that bend least.  An edge
-    that is marked is listed once more if two sides or more end there."""
+    the sides left, two of one part and of the same length, as sides of a cut have, and of several such, those that bend
+    least.  An edge that is marked is listed once more if two sides or more end there: it tells nothing of folds."""
     cuts = Counter(edge_keys(*result.cut_edges.T).tolist())
     by_edge: dict[int, list[int]] = {}
     for side, key in zip(h.tolist(), edge_keys(vertex[h], vertex[next_corner(h)]).tolist(), strict=True):
         by_edge.setdefault(key, []).append(side)
     ahead, place = next_corner(np.arange(len(z))), surface.positions[vertex]
+
+    def joinable(a: int, b: int) -> bool:
+        return bool(vertex[a] == vertex[ahead[b]] and part[a // 3] == part[b // 3])
 
     def differ(a: int, b: int) -> bool:
         one, other = abs(z[ahead[a]] - z[a]), abs(z[ahead[b]] - z[b])
@@ -139,18 +146,20 @@ def _running_on(
     def bend(a: int, b: int) -> float:
         along = place[ahead[a]] - place[a]
         normals = [np.cross(along, place[ahead[ahead[side]]] - place[a]) for side in (a, b)]
+        if min(np.linalg.norm(normal) for normal in normals) <= NO_HEIGHT * (along @ along):
+            return np.pi / 2
         return float(np.arctan2(np.linalg.norm(np.cross(*normals)), -normals[0] @ normals[1]))
 
     marked = set(edge_keys(*surface.seams.T).tolist())
     pairs: list[tuple[int, int]] = []
     for key, sides in by_edge.items():
-        opposite = [(a, b) for a, b in combinations(sides, 2) if vertex[a] == vertex[ahead[b]]]
+        opposite = [(a, b) for a, b in combinations(sides, 2) if joinable(a, b)]
         together = [(a, b) for a, b in opposite if z[a] == z[ahead[b]] and z[ahead[a]] == z[b]]
         apart = sorted(set(opposite) - set(together), key=lambda pair: (differ(*pair), bend(*pair)))
         taken: set[int] = set()
         cut = cuts[key]
         if key in marked:
-            apart = [pair for pair in apart if not differ(*pair)]
+            apart = [pair for pair in apart if not differ(*pair) and bend(*pair) < FOLDED]
             cut -= len(sides) - 2 * (len(together) + cut) >= 2
         for candidates, most in ((together, len(together)), (apart, cut)):
             for pair in candidates:
@@ -159,6 +168,14 @@ def _running_on(
                     taken.update(pair)
                     most -= 1
     return np.array(pairs, np.int64).reshape(-1, 2)
+
+
+def _parts(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
+    """The number of each triangle's part as the library tells it, -1 of those in none."""
+    out = np.full(len(surface.triangles), -1)
+    for number, part in enumerate(lsgp.build_ledger(surface, result.cones, result.cone_angles, options)):
+        out[part.triangles] = number
+    return out
 
 
 def _borders_inside(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
