@@ -76,7 +76,7 @@ Made best_in_time(const TimeLimit& limit, const Objective& objective, const MapO
                   const std::function<Made()>& make) try {
   return make();
 } catch (const Error& error) {
-  const Made best = objective.best_so_far();
+  const Made& best = objective.best_so_far();
   if (!limit.has_caused(error) || !best) throw;
   tell_findings(*best, of_map.of_map);
   best->result.warnings.push_back(
@@ -84,8 +84,18 @@ Made best_in_time(const TimeLimit& limit, const Objective& objective, const MapO
   return best;
 }
 
-Unwrapped unwrapped(const Surface& whole, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
-                    const TimeLimit& limit, const Progress& unlimited) {
+struct GivenForMap {
+  const Surface& surface;
+  const Cones& cones;
+  const Pins& pins;
+};
+
+// unlimited: goes on when the time is over.
+Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit,
+                    const Progress& unlimited) {
+  const Surface& whole = from.surface;
+  const Cones& cones = from.cones;
+  const Pins& pins = from.pins;
   const Progress& progress = limit.progress();
   const PresetRow preset = row_of(options.preset);
   const Weights weights = options.weights.value_or(preset.weights);
@@ -150,7 +160,7 @@ Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwr
                       const Progress& progress) {
   const TimeLimit limit(options.seconds, progress);
   try {
-    return unwrapped(surface, cones, options, pins, limit, progress);
+    return unwrapped({surface, cones, pins}, options, limit, progress);
   } catch (const Error& error) {
     if (!limit.has_caused(error)) throw;
     throw Error(Code::time_limit,
