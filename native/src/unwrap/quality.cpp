@@ -19,6 +19,12 @@ namespace {
 // Up to so many islands each counts in full, of more of them what makes the tenth part.
 constexpr double few_islands = 10;
 
+// What cuts cost beyond their length; nothing in seamless layouts, whose cuts do not show.
+PerComponent<double> extra_costs(const SurfaceParts& parts, const Result& result) {
+  if (result.seamless) return PerComponent<double>(parts.count(), 0);
+  return extra_costs_on(parts, result.cut_edges);
+}
+
 double area_of(const Result& result, const CornerUv& corner_uv) {
   double sum = 0;
   for (std::size_t f = 0; f < result.island.size(); ++f) {
@@ -90,7 +96,7 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   out.stretch = 100 * (result.distortion.l2_stretch - 1);
   out.islands = island_count(result);
   out.cuts = length_of(parts.surface(), result.cut_edges) / size;
-  const PerComponent<double> extra = extra_costs_on(parts, result.cut_edges);
+  const PerComponent<double> extra = extra_costs(parts, result);
   out.costly_cuts = std::accumulate(extra.begin(), extra.end(), 0.0) / size;
   out.borders = length_of(parts.surface(), parts.surface().borders) / size;
   out.cones = count_by_area(parts, result.cones);
@@ -118,7 +124,7 @@ const Quality& measured(MadeMap& made, SquareShare share, const Progress& progre
 ComponentCosts costs_on(const SurfaceParts& parts, const MadeMap& made, const Weights& weights) {
   const Result& result = made.result;
   const PerComponent<double> cuts = lengths_on(parts, result.cut_edges);
-  const PerComponent<double> extra = extra_costs_on(parts, result.cut_edges);
+  const PerComponent<double> extra = extra_costs(parts, result);
   const PerComponent<double> borders = lengths_on(parts, made.surface->surface().borders);
   const PerComponent<Index> islands = islands_on(parts, result), cones = counts_on(parts, result.cones);
   const double price = price_of_island(result, weights);

@@ -89,4 +89,6 @@ def test_tiles_meet_nothing_is_flipped_and_one_line_is_said(model, preset, repor
         uv_map = maps[obj.data]
         assert uv_map.flipped() == set()
         assert uv_map.tile_error(but=creases_of(obj)) == 0
-    assert len(said.strip().splitlines()) == 1 and said.startswith("Info: ")
+    # Of parts of many sizes the smallest may have smaller tiles, which is said as well.
+    first, *others = said.strip().splitlines()
+    assert first.startswith("Info: ") and all("Tiles are up to" in other for other in others)
