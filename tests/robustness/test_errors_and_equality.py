@@ -79,6 +79,8 @@ def examples() -> list[object]:
         lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
         lsgp.find_stacks(result.corner_uv, result.island),
+        lsgp.ShapedMap(np.zeros((2, 3, 2)), np.array([1], np.int32), 1, []),
+        lsgp.StitchedMap(np.zeros((2, 3, 2)), np.ones(2, bool), 1, 0, np.zeros(3, bool), np.zeros(3, bool)),
         lsgp.MovedCut(np.array([0, 1], np.int32), np.array([2], np.int32), np.zeros((1, 3, 2))),
         part,
         released,

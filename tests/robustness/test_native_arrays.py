@@ -39,6 +39,7 @@ MAP = option_values(lsgp.Options())
 CHOOSING = {
     **{"preset": "paint", "options": option_values(lsgp.preset_options("paint")), "count": 4, "target": 1.05},
     **{"weights": asdict(lsgp.Weights()), "symmetric": True, "charts": True, "creases": True},
+    "seconds": None,
 }
 SOLVER = _lsgp.Solver(ARRAYS, None)
 COMPLETED = SOLVER.complete_cones(CONES, None, 1.05, MAP, None)
@@ -80,6 +81,22 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
     "pack_islands": (
         _lsgp.pack_islands,
         (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), PACKING, None),
+    ),
+    "usual_margin": (
+        _lsgp.usual_margin,
+        (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), 1),
+    ),
+    "shape_patches": (
+        _lsgp.shape_patches,
+        (
+            ARRAYS,
+            RESULT.corner_uv,
+            np.arange(4, dtype=np.int32),
+            "rectangle",
+            np.zeros(0, np.int32),
+            np.zeros(0, np.int32),
+            None,
+        ),
     ),
     "parameterize": (_lsgp.parameterize, (ARRAYS, CONES, OPTIONS, PINS, None)),
     "preset": (_lsgp.preset, ("paint",)),

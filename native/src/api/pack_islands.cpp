@@ -245,7 +245,9 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
 double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island, int tiles) {
   constexpr double least = 0.5 / 1024;
   constexpr double filled = 0.7;  // of a tile, by islands and gaps, as layouts are about
-  const Index count = island.empty() ? 0 : std::max(1 + *std::max_element(island.begin(), island.end()), 0);
+  PackingOptions options;
+  options.tiles = tiles;
+  const Index count = require_valid(corner_uv, island, options);
   constexpr double far = std::numeric_limits<double>::infinity();
   Array<Box> boxes(count, Box{far, -far, far, -far});
   double area = 0, around = 0, islands = 0;
