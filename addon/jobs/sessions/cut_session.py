@@ -79,7 +79,8 @@ class CutSession(MapSession):
         with readable_mesh(obj) as copy:
             mesh = FrozenMesh(copy)
             region = build_region(obj, mesh, Faces.ALL, Groups(cones=CONE_GROUP))
-        self._region = with_cut_costs(region, choice)
+        # Whoever drags a cut sees where it runs: it takes the short way there, not one around the front.
+        self._region = with_cut_costs(region, replace(choice, front=None))
         self._mover = native.lsgp.CutMover(self._region.surface)
         self._earlier = reports.find(obj.data)
         super().__init__(obj, mesh)

@@ -29,7 +29,7 @@ class MESH_OT_cone_edit_cuts(ModalEdit, bpy.types.Operator):
     bl_label = "Edit Cuts"
     bl_description = (
         "Drag cuts of the UV map with the mouse: faces that a cut passes move to its other side without changing their "
-        "shape. Cuts run as preferred by Cuts of the last Unwrap from Cones and by painted costs"
+        "shape. Cuts run as preferred by Cuts of the last Unwrap from Cones and by painted costs, in front as well"
     )
     bl_options = {"UNDO"}
 
