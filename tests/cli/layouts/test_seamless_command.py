@@ -85,7 +85,7 @@ def test_tiles_are_counted_along_the_longer_side(lsgp, ball_files: Path) -> None
         found = unwrapped(lsgp, "--tiles", tiles)
         assert found["tiles"] == pytest.approx(tiles)
         # Rounding and the turn of the layout move its ends by a few tiles, however many there are.
-        assert extent(ball_files / "out.obj") == pytest.approx(tiles, rel=0.1, abs=5)
+        assert extent(ball_files / "out.obj") == pytest.approx(tiles, rel=0.2, abs=5)
 
 
 def test_tile_size_is_of_the_surface(lsgp, ball_files: Path) -> None:
