@@ -230,6 +230,12 @@ def require_editable(obj: bpy.types.Object) -> None:
         raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
 
 
+def require_uv_map(obj: bpy.types.Object) -> None:
+    """Raise Refused where the mesh has none."""
+    if obj.data.uv_layers.active is None:
+        raise Refused("the mesh has no UV map; unwrap it first")
+
+
 def _chosen_faces(mesh: StoredMesh, faces: Faces, mode: str) -> NDArray[np.bool_]:
     if faces is Faces.ALL or mode != "EDIT":
         chosen = np.ones(len(mesh.loop_start), bool)

@@ -304,9 +304,9 @@ def _in_uv_editor(panel: type[bpy.types.Panel]) -> type[bpy.types.Panel]:
     if hasattr(panel, "bl_parent_id"):
         members["bl_parent_id"] = name_of(panel.bl_parent_id)
     bases = (panel.__mro__[1], bpy.types.Panel)
-    kept = {name: value for name, value in vars(panel).items() if name in ("bl_label", "bl_order", "bl_options")}
-    drawn = {name: value for name, value in vars(panel).items() if name in ("draw", "draw_header")}
-    return type(name_of(panel.__name__), bases, {**kept, **drawn, **members})
+    names = ("bl_label", "bl_order", "bl_options", "draw", "draw_header")
+    own = {name: value for name, value in vars(panel).items() if name in names}
+    return type(name_of(panel.__name__), bases, {**own, **members})
 
 
 UV_EDITOR_PANELS = tuple(

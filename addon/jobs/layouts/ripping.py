@@ -7,7 +7,7 @@ import numpy as np
 
 from ...core.islands import Islands, Place
 from ...core.text import counted
-from ..uv_maps.islands import ChangedMap, Map, moved_map, ripped_patches
+from ..uv_maps.islands import ChangedMap, Map, changed_map, ripped_patches
 from .packing import pack_in_place
 
 
@@ -22,4 +22,4 @@ def ripped(found: Map, margin: float) -> ChangedMap:
     (packed,) = pack_in_place([part], margin, place, turned=False)
     uv = found.corner_uv.copy()
     uv[taken] = packed
-    return moved_map(found, uv, taken, f"{counted(int(number.max()) + 1, 'island')} ripped")
+    return changed_map(found, uv, taken, f"{counted(int(number.max()) + 1, 'island')} ripped")

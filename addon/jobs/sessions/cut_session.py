@@ -20,7 +20,7 @@ from ...core.errors import Refused
 from ...core.identifiers import CONE_GROUP
 from ...mesh import reports
 from ...mesh.reader import readable_mesh
-from ...mesh.region_read import Faces, Groups, build_region, require_editable
+from ...mesh.region_read import Faces, Groups, build_region, require_editable, require_uv_map
 from ...mesh.stored_mesh import FrozenMesh
 from ..tasks.cuts import CutChoice, with_cut_costs
 from .map_session import MapSession
@@ -74,8 +74,7 @@ class CutSession(MapSession):
     def __init__(self, obj: bpy.types.Object, choice: CutChoice) -> None:
         """Raises Refused, LsgpError."""
         require_editable(obj)
-        if obj.data.uv_layers.active is None:
-            raise Refused("the mesh has no UV map; unwrap it first")
+        require_uv_map(obj)
         with readable_mesh(obj) as copy:
             mesh = FrozenMesh(copy)
             region = build_region(obj, mesh, Faces.ALL, Groups(cones=CONE_GROUP))

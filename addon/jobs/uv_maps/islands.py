@@ -94,7 +94,7 @@ def shaped(found: Map, shape: str, corners: Sequence[int] | NDArray[np.int32] = 
     )
     moved = np.zeros(len(found.island), bool)
     moved[result.moved] = True
-    return _changed(found, result.corner_uv, moved, counted(result.patches, "patch", "patches"), result.warnings)
+    return changed_map(found, result.corner_uv, moved, counted(result.patches, "patch", "patches"), result.warnings)
 
 
 def turned(found: Map, turns: FloatArray, tiles: Tiles | None) -> ChangedMap:
@@ -112,7 +112,7 @@ def turned(found: Map, turns: FloatArray, tiles: Tiles | None) -> ChangedMap:
     if tiles is not None:
         uv = _on_tiles(found, uv, turns, tiles)
     moved = (uv != found.corner_uv).any(axis=(1, 2)) & (found.island >= 0)
-    return _changed(found, uv, moved, _turned_text(turns, wanted), notes=kept)
+    return changed_map(found, uv, moved, _turned_text(turns, wanted), notes=kept)
 
 
 def upright_turns(found: Map, up: FloatArray) -> FloatArray:
@@ -163,7 +163,7 @@ def aligned(parts: Sequence[Map], side: str, tiles: Sequence[Tiles | None]) -> l
         uv = part.corner_uv + shift[part.island][:, None]
         moved = (shift[part.island] != 0).any(axis=1)
         done = counted(len(rows), "island") + " aligned"
-        outcomes.append(replace(_changed(part, uv, moved, done), keeps_tiles=of_tiles is not None))
+        outcomes.append(replace(changed_map(part, uv, moved, done), keeps_tiles=of_tiles is not None))
     return outcomes
 
 
@@ -187,7 +187,7 @@ def stitched(found: Map, edges: NDArray[np.int32]) -> ChangedMap:
         notes.append(f"{counted(int(result.within.sum()), 'edge')} left cut, as both sides are of one island")
     if result.pinned.any():
         notes.append(f"{counted(int(result.pinned.sum()), 'edge')} left cut between pinned islands")
-    return _changed(found, result.corner_uv, result.moved, f"{counted(result.joined, 'island')} joined", notes=notes)
+    return changed_map(found, result.corner_uv, result.moved, f"{counted(result.joined, 'island')} joined", notes=notes)
 
 
 def ripped_patches(found: Map) -> NDArray[np.int32]:
@@ -208,14 +208,21 @@ def ripped_patches(found: Map) -> NDArray[np.int32]:
     return numbers
 
 
-def moved_map(found: Map, corner_uv: FloatArray, moved: NDArray[np.bool_], done: str) -> ChangedMap:
-    """corner_uv: in units of the image's height."""
-    return _changed(found, corner_uv, moved, done)
+def changed_map(
+    found: Map,
+    corner_uv: FloatArray,
+    moved: NDArray[np.bool_],
+    done: str,
+    warnings: Sequence[lsgp.Finding] = (),
+    notes: Sequence[str] = (),
+) -> ChangedMap:
+    """corner_uv: (m, 3, 2) in units of the image's height. moved: (m,) bool, the triangles that have new ones."""
+    stored = np.where(moved[:, None, None], corner_uv / _unit(found.region), found.region.corner_uv)
+    return ChangedMap(found.region, stored, moved, done, list(notes), list(warnings))
 
 
-def report_on_changed(report: Report, changed: ChangedMap) -> Report:
-    """The report on a map that was changed.  Raises LsgpError."""
-    found = native.lsgp.measure_distortion(changed.region.surface, changed.corner_uv)
+def report_on_changed(report: Report, changed: ChangedMap, found: lsgp.Measurement) -> Report:
+    """The report on a map that was changed.  found: measured on it."""
     return replace(
         report,
         islands=int(found.island.max(initial=-1)) + 1,
@@ -229,13 +236,10 @@ def report_on_changed(report: Report, changed: ChangedMap) -> Report:
     )
 
 
-def transition_notes(report: Report | None, changed: ChangedMap) -> list[str]:
-    """What is to be told of the cuts of a map that matched."""
-    if not changed.moved.any():
-        return []
+def transition_notes(report: Report | None, changed: ChangedMap, found: lsgp.Measurement) -> list[str]:
+    """What is to be told of the cuts of a map that matched.  found: measured on it.  Raises LsgpError."""
     before = native.lsgp.measure_distortion(changed.region.surface, changed.region.corner_uv).seams
-    after = native.lsgp.measure_distortion(changed.region.surface, changed.corner_uv).seams
-    if before.sister_ratio_max <= _MATCH < after.sister_ratio_max:
+    if before.sister_ratio_max <= _MATCH < found.seams.sister_ratio_max:
         return ["the texture no longer continues across all cuts"]
     if report is not None and report.certificate is not None and not changed.keeps_tiles:
         return ["the layout is no longer certified as seamless"]
@@ -245,18 +249,6 @@ def transition_notes(report: Report | None, changed: ChangedMap) -> list[str]:
 def _unit(region: Region) -> FloatArray:
     """By which stored coordinates are multiplied to be those of an image as high as 1."""
     return np.array([region.image_aspect, 1.0])
-
-
-def _changed(
-    found: Map,
-    corner_uv: FloatArray,
-    moved: NDArray[np.bool_],
-    done: str,
-    warnings: Sequence[lsgp.Finding] = (),
-    notes: Sequence[str] = (),
-) -> ChangedMap:
-    stored = np.where(moved[:, None, None], corner_uv / _unit(found.region), found.region.corner_uv)
-    return ChangedMap(found.region, stored, moved, done, list(notes), list(warnings))
 
 
 def _free(found: Map) -> tuple[NDArray[np.intp], list[str]]:
@@ -277,11 +269,11 @@ def _on_tiles(found: Map, uv: FloatArray, turns: FloatArray, tiles: Tiles) -> Fl
     """With the islands that were turned, by the lattice's rotations about their middles, where tiles match."""
     lattice, island = native.lsgp.lattice, found.island
     out = uv.copy()
+    if tiles.rotation_order not in (2, 4):
+        return out
     for number in np.flatnonzero(turns).tolist():
         inside = island == number
         quarters = round(turns[number] / (math.pi / 2))
-        if tiles.rotation_order not in (2, 4):
-            continue
         z = found.corner_uv[inside] @ np.array([1, 1j]) * (1, 1j, -1, -1j)[quarters % 4]
         turned_uv = np.stack([z.real, z.imag], axis=-1)
         away = uv[inside].mean(axis=(0, 1)) - turned_uv.mean(axis=(0, 1))

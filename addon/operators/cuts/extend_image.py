@@ -11,7 +11,7 @@ from ...core.text import counted
 from ...jobs.uv_maps.gutters import Mapped, extended, mapped_faces
 from ...mesh.image_aspect import active_image, faces_showing
 from ...mesh.image_pixels import read_pixels, require_paintable, write_pixels
-from ...mesh.region_read import Faces, Groups, read_region
+from ...mesh.region_read import Faces, Groups, read_region, require_uv_map
 from ...mesh.targets import target_objects
 from ..shared.conclusion import conclude, for_each
 from ..shared.polling import ComputingOperator
@@ -78,8 +78,7 @@ class UV_OT_cone_extend_image(ComputingOperator, bpy.types.Operator):
 def _shown(obj: bpy.types.Object) -> tuple[bpy.types.Image, Mapped]:
     """The image that an object shows, and the faces that show it.  Raises LsgpError, Refused."""
     region = read_region(obj, Faces.ALL, Groups())
-    if obj.data.uv_layers.active is None:
-        raise Refused("the mesh has no UV map; unwrap it first")
+    require_uv_map(obj)
     image = active_image(obj)
     if image is None:
         raise Refused("the material of the active face has no image with pixels; add an Image Texture to it")

@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core import identifiers
-from ...core.errors import Refused
 from ...core.text import counted
 from ...jobs.uv_maps.measuring import measure_faces
 from ...mesh import distortion
-from ...mesh.region_read import Faces, Groups, read_region, require_editable
+from ...mesh.region_read import Faces, Groups, read_region, require_editable, require_uv_map
 from ...mesh.targets import target_objects
 from ...overlay.settings import settings
 from ..shared.conclusion import conclude, for_each
@@ -66,6 +65,5 @@ def _cleared(obj: bpy.types.Object) -> bool:
 def _measured(obj: bpy.types.Object) -> dict[str, NDArray[np.float32]]:
     """(f,) values of each measure.  Raises LsgpError, Refused."""
     require_editable(obj)
-    if obj.data.uv_layers.active is None:
-        raise Refused("the mesh has no UV map; unwrap it first")
+    require_uv_map(obj)
     return measure_faces(read_region(obj, Faces.ALL, Groups()))

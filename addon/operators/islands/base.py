@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import bpy
 
-from ...core import findings
-from ...core.errors import Refused
+from ...core import findings, native
 from ...jobs.uv_maps.islands import ChangedMap, Map, read_map, report_on_changed, transition_notes
 from ...mesh import reports
-from ...mesh.region_read import Faces, read_chosen, require_editable
+from ...mesh.region_read import Faces, read_chosen, require_editable, require_uv_map
 from ...mesh.targets import selects_by_uv, target_objects
 from ...mesh.uv_write import write_uv
 from ..shared.conclusion import conclude, for_each
@@ -53,10 +52,12 @@ class IslandOperator:
             findings.keep(obj, changed.region, changed.warnings)
             warnings[obj.name] = changed.warnings
             report = reports.find(obj.data)
-            notes = [*changed.notes, *transition_notes(report, changed)]
+            notes = changed.notes
             if changed.moved.any():
                 # Measured before anything is written, as that may fail.
-                report = report and report_on_changed(report, changed)
+                measured = native.lsgp.measure_distortion(changed.region.surface, changed.corner_uv)
+                notes = [*notes, *transition_notes(report, changed, measured)]
+                report = report and report_on_changed(report, changed, measured)
                 write_uv(obj, changed.region, changed.moved, changed.corner_uv)
                 if report is not None:
                     reports.store(obj.data, report)
@@ -67,8 +68,7 @@ class IslandOperator:
 def read_selected(context: bpy.types.Context, obj: bpy.types.Object, faces: Faces | None = None) -> Map | None:
     """faces: None: the selected ones of the editor.  Raises LsgpError, Refused."""
     require_editable(obj)
-    if obj.data.uv_layers.active is None:
-        raise Refused("the mesh has no UV map; unwrap it first")
+    require_uv_map(obj)
     selected = Faces.UV_SELECTED if selects_by_uv(context) else Faces.SELECTED
     chosen = read_chosen(obj, selected if faces is None else faces)
     return None if chosen is None else read_map(*chosen)

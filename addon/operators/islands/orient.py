@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core import identifiers
 from ...core.errors import Refused
+from ...jobs.tasks.directions import UP
 from ...jobs.uv_maps.islands import ChangedMap, Map, tiles_of, turned, turns_along, upright_turns
 from ...mesh import reports
 from .base import IslandOperator
@@ -17,7 +18,6 @@ UPRIGHT = (
     ("WORLD", "World's Up", "The world's z axis points up in the image"),
     ("EDGE", "Active Edge", "The islands at the active edge are turned until it is upright"),
 )
-_UP = np.array([0.0, 0.0, 1.0])
 
 
 class UV_OT_cone_orient(IslandOperator, bpy.types.Operator):
@@ -39,5 +39,5 @@ class UV_OT_cone_orient(IslandOperator, bpy.types.Operator):
                 raise Refused("no edge is active; select one last in edit mode, or choose an axis")
             turns = turns_along(found, region.active_edge)
         else:
-            turns = upright_turns(found, _UP if self.by == "MODEL" else _UP @ region.axes)
+            turns = upright_turns(found, np.array(UP) if self.by == "MODEL" else np.array(UP) @ region.axes)
         return turned(found, turns, tiles_of(reports.find(obj.data)))

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-from ...core.errors import Refused
 from ...jobs.uv_maps.texels import Texels, measure_texels
-from ...mesh.region_read import Faces, read_chosen, require_editable
+from ...mesh.region_read import Faces, read_chosen, require_editable, require_uv_map
 from ...mesh.targets import selects_by_uv
 from ...mesh.texel_settings import image_property, size_property, texel_settings, texture_size
 from ..shared.polling import ComputingOperator
@@ -46,8 +45,7 @@ class TexelOperator(ComputingOperator):
         Raises LsgpError, Refused.
         """
         require_editable(obj)
-        if obj.data.uv_layers.active is None:
-            raise Refused("the mesh has no UV map; unwrap it first")
+        require_uv_map(obj)
         selected = Faces.UV_SELECTED if selects_by_uv(context) else Faces.SELECTED
         found = read_chosen(obj, selected if faces is None else faces)
         if found is None:

@@ -11,12 +11,11 @@ import bpy
 
 from ...core import identifiers
 from ...core.choices import TextureProperties
-from ...core.errors import Refused
 from ...core.text import counted, square_in_percent
 from ...jobs.layouts.repacking import Repacked, RepackSettings, RepackTask, repack
 from ...jobs.uv_maps.texels import report_on_scaled
 from ...mesh import reports
-from ...mesh.region_read import Faces, read_chosen, read_surroundings, require_editable
+from ...mesh.region_read import Faces, read_chosen, read_surroundings, require_editable, require_uv_map
 from ...mesh.uv_write import write_uv
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.packing import EFFORTS, PackingProperties
@@ -74,8 +73,7 @@ class UV_OT_cone_pack(TextureProperties, PackingProperties, BackgroundOperator, 
 
         def read(obj: bpy.types.Object) -> RepackTask | None:
             require_editable(obj)
-            if obj.data.uv_layers.active is None:
-                raise Refused("the mesh has no UV map; unwrap it first")
+            require_uv_map(obj)
             found = read_chosen(obj, faces)
             if found is None:
                 self._beside.append(obj)

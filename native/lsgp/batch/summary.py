@@ -54,7 +54,7 @@ def _by_folder(records: Sequence[Record]) -> list[str]:
 
 
 def _median_and_highest(records: Sequence[Record], form: str, figure) -> tuple[str, str]:
-    values = [figure(record) for record in records if figure(record) is not None]
+    values = [value for value in map(figure, records) if value is not None]
     return (format(statistics.median(values), form), format(max(values), form)) if values else ("-", "-")
 
 

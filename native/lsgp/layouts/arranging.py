@@ -38,7 +38,7 @@ def upright_turns(surface: Surface, corner_uv: ArrayLike, island: ArrayLike, up:
     InputError.
     """
     require_vertices(surface)
-    uv, island, count = _islands(corner_uv, island)
+    uv, island, count = numbered_islands(corner_uv, island)
     if len(island) != len(surface.triangles):
         arguments.refuse("island", len(island), "pass a number for each triangle")
     axis = require_up(up)
@@ -89,7 +89,7 @@ def turn_islands(corner_uv: ArrayLike, island: ArrayLike, turns: ArrayLike) -> F
     corner_uv: (m, 3, 2). island: (m,), -1 for none. turns: (islands,) radians; quarter turns are exact.  Raises
     InputError.
     """
-    uv, island, count = _islands(corner_uv, island)
+    uv, island, count = numbered_islands(corner_uv, island)
     angles = arguments.floats_of_shape("turns", turns, (count,))
     if not np.isfinite(angles).all():
         arguments.refuse("turns", turns, "pass finite angles")
@@ -173,7 +173,7 @@ def stitch_islands(
     InputError: EDGE_NOT_IN_MESH.
     """
     require_vertices(surface)
-    uv, island, count = _islands(corner_uv, island)
+    uv, island, count = numbered_islands(corner_uv, island)
     pairs = arguments.index_rows("edges", edges, 2)
     arguments.require_indices("edges", pairs, len(surface.positions))
     stays = np.zeros(count, bool)
@@ -252,7 +252,7 @@ def _joints(
 def _by_transition(z: NDArray[np.complex128], joint: _Joint) -> list[_Joint]:
     """The parts of a path that match by one rotation and one translation each, as on both sides of a cone, and the rest
     of it."""
-    if _matches(z, joint.first, joint.second):
+    if _Fit.of(z, joint.first, joint.second).is_exact:
         return [joint]
     here, there = (z[ends[:, 1]] - z[ends[:, 0]] for ends in (joint.first, joint.second))
     turn = here * there.conj()
@@ -263,18 +263,36 @@ def _by_transition(z: NDArray[np.complex128], joint: _Joint) -> list[_Joint]:
     parts, rest = [], np.ones(len(order), bool)
     for number in range(int(alike.max()) + 1):
         of = alike == number
-        if of.sum() > 1 and _matches(z, joint.first[of], joint.second[of]):
+        if of.sum() > 1 and _Fit.of(z, joint.first[of], joint.second[of]).is_exact:
             parts.append(_Joint(joint.rows[of], joint.first[of], joint.second[of]))
             rest &= ~of
     return [*parts, _Joint(joint.rows[rest], joint.first[rest], joint.second[rest])] if rest.any() else parts
 
 
-def _matches(z: NDArray[np.complex128], onto: NDArray[np.intp], moving: NDArray[np.intp]) -> bool:
-    p, q = z[moving.ravel()], z[onto.ravel()]
-    p, q = p - p.mean(), q - q.mean()
-    along = (p.conj() * q).sum()
-    turn = along / abs(along) if abs(along) > 0 else 1.0
-    return float(abs(turn * p - q).max()) <= _MATCH * float(abs(q).max())
+@dataclass
+class _Fit:
+    """How points come onto others: both about their middles, and the turn that fits best."""
+
+    source: complex
+    target: complex
+    p: NDArray[np.complex128]
+    q: NDArray[np.complex128]
+    along: complex
+
+    @classmethod
+    def of(cls, z: NDArray[np.complex128], onto: NDArray[np.intp], moving: NDArray[np.intp]) -> _Fit:
+        p, q = z[moving.ravel()], z[onto.ravel()]
+        source, target = p.mean(), q.mean()
+        p, q = p - source, q - target
+        return cls(source, target, p, q, (p.conj() * q).sum())
+
+    @property
+    def turn(self) -> complex:
+        return self.along / abs(self.along) if abs(self.along) > 0 else 1.0
+
+    @property
+    def is_exact(self) -> bool:
+        return float(abs(self.turn * self.p - self.q).max()) <= _MATCH * float(abs(self.q).max())
 
 
 def _length(z: NDArray[np.complex128], ends: NDArray[np.intp]) -> float:
@@ -285,14 +303,11 @@ def _move_onto(
     z: NDArray[np.complex128], inside: NDArray[np.bool_], onto: NDArray[np.intp], moving: NDArray[np.intp]
 ) -> bool:
     """Move the corners inside so that some come onto others.  Returns whether a rotation and a translation did it."""
-    target, source = z[onto].mean(), z[moving].mean()
-    p, q = z[moving] - source, z[onto] - target
-    along = (p.conj() * q).sum()
-    turn = along / abs(along) if abs(along) > 0 else 1.0
-    exact = _matches(z, onto, moving)
-    if not exact and abs(along) > 0:
-        turn = along / (abs(p) ** 2).sum()
-    z[inside] = turn * (z[inside] - source) + target
+    fit = _Fit.of(z, onto, moving)
+    exact, turn = fit.is_exact, fit.turn
+    if not exact and abs(fit.along) > 0:
+        turn = fit.along / (abs(fit.p) ** 2).sum()
+    z[inside] = turn * (z[inside] - fit.source) + fit.target
     return exact
 
 
@@ -311,7 +326,8 @@ def _weld(
         z[corner] = place.get((int(vertex[corner]), z[corner]), z[corner])
 
 
-def _islands(corner_uv: ArrayLike, island: ArrayLike) -> tuple[FloatArray, IndexArray, int]:
+def numbered_islands(corner_uv: ArrayLike, island: ArrayLike) -> tuple[FloatArray, IndexArray, int]:
+    """The coordinates, (m, 3, 2), the number of each triangle's island, and of islands.  Raises InputError."""
     numbers = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(numbers))
     return uv, numbers, int(numbers.max(initial=-1)) + 1

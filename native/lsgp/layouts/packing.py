@@ -58,7 +58,7 @@ class Packing:
         density, which scales it too. udim: over how many UDIM tiles a tight layout is
         spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
-    up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
+        up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
     """
 
     pack: Pack | None = None

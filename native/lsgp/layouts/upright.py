@@ -14,7 +14,7 @@ from ..base.edge_keys import edge_keys
 from ..errors import InputError
 from ..indexed_uv import index_corners
 from ..lattice import island_boxes
-from .arranging import turn_islands
+from .arranging import numbered_islands, turn_islands
 
 _QUARTER = math.pi / 2
 # Of the cosine of what is left to upright: what a turn has to gain.
@@ -37,9 +37,7 @@ def stand_upright(
     about the middle of its own box, the largest first, if it does not come too near to another.
     Returns (m, 3, 2).  Raises InputError.
     """
-    numbers = arguments.islands("island", island)
-    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(numbers))
-    count = int(numbers.max(initial=-1)) + 1
+    uv, numbers, count = numbered_islands(corner_uv, island)
     left = arguments.floats_of_shape("turns", turns, (count,)).copy()
     if not np.isfinite(left).all():
         arguments.refuse("turns", turns, "pass finite angles")

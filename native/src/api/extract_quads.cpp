@@ -24,10 +24,7 @@ namespace {
 
 void require_valid(const Surface& surface, const CornerUv& corner_uv, double cell) {
   require_valid(surface);
-  if (corner_uv.rows() != surface.triangles.size()) {
-    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
-                                              surface.triangles.size(), " corners of triangles. Give one for each."));
-  }
+  require_one_each(surface, corner_uv);
   if (!(std::isfinite(cell) && cell > 0)) {
     throw Error(Code::wrong_parameter, concat("The cell's side is ", cell, ". Choose one above 0."));
   }

@@ -137,10 +137,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   require_valid(surface);
-  if (corner_uv.rows() != surface.triangles.size()) {
-    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
-                                              surface.triangles.size(), " corners of triangles. Give one for each."));
-  }
+  require_one_each(surface, corner_uv);
   if (cones) require_valid(surface, {*cones, Array<std::optional<double>>(cones->size())});
   Measurement out;
   out.island.assign(static_cast<std::size_t>(surface.triangles.rows()), none);

@@ -268,19 +268,19 @@ CutGraph MirroredCuts::complete(const CutGraph& half) const {
   return task_.mesh.genus > 0 ? along(cuts) : cuts;
 }
 
-double length_of(const MetricMesh& surface, const CutGraph& cuts) {
-  double out = 0;
-  for (const Cut& cut : cuts.cuts) {
-    for (const Index h : cut.halfedges) out += surface.geometry.length[h];
-  }
-  return out;
-}
+// Of cuts, and of them with those that cost more than others as many times longer.
+struct CutLengths {
+  double plain = 0, seen = 0;
+};
 
-// Of cuts, those that cost more than others as many times longer.
-double seen_length(const MetricMesh& surface, const CutGraph& cuts) {
-  double out = 0;
+CutLengths lengths_of(const MetricMesh& surface, const CutGraph& cuts) {
+  CutLengths out;
   for (const Cut& cut : cuts.cuts) {
-    for (const Index h : cut.halfedges) out += std::max(surface.geometry.length[h], cut_cost(surface, h));
+    for (const Index h : cut.halfedges) {
+      const double length = surface.geometry.length[h];
+      out.plain += length;
+      out.seen += std::max(length, cut_cost(surface, h));
+    }
   }
   return out;
 }
@@ -290,16 +290,17 @@ double seen_length(const MetricMesh& surface, const CutGraph& cuts) {
 CutGraph connect_symmetrically(const CutTask& task, const Mirroring& mirroring) {
   CutGraph usual = connect_cones(task, task.interior_cones, task.uncut);
   if (usual.cuts.empty() || !are_mirrored(mirroring, task.interior_cones)) return usual;
-  const double most = seen_length(task, usual) + longest * length_of(task, usual);
+  const auto [length, seen] = lengths_of(task, usual);
+  const double most = seen + longest * length;
   try {
     const MirroredCuts mirrored(task, mirroring);
     const CutGraph free_half = mirrored.free_half();
     if (const auto half = mirrored.half_with_trunk(free_half)) {
       CutGraph cuts = mirrored.complete(*half);
-      if (seen_length(task, cuts) <= most) return cuts;
+      if (lengths_of(task, cuts).seen <= most) return cuts;
     }
     CutGraph cuts = mirrored.complete(free_half);
-    if (seen_length(task, cuts) <= most) return cuts;
+    if (lengths_of(task, cuts).seen <= most) return cuts;
   } catch (const Error& error) {
     if (error.code() != Code::cuts_blocked) throw;
   }

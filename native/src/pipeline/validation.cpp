@@ -192,6 +192,13 @@ void require_countable(std::ptrdiff_t count, const char* what) {
                                             " can be computed with. Unwrap fewer faces at once."));
 }
 
+void require_one_each(const Surface& surface, const CornerUv& corner_uv) {
+  if (corner_uv.rows() != surface.triangles.size()) {
+    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
+                                              surface.triangles.size(), " corners of triangles. Give one for each."));
+  }
+}
+
 void require_vertices(const Surface& surface, const VertexPairs& pairs, const char* what) {
   const Index vertex_count = static_cast<Index>(surface.positions.rows());
   require_countable(pairs.rows(), what);

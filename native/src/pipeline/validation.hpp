@@ -25,6 +25,9 @@ void require_connectivity(const Surface& surface);
 // WRONG_PARAMETER.
 void require_valid(const Surface& surface);
 
+// Checks that every corner of a triangle has texture coordinates. Throws WRONG_PARAMETER.
+void require_one_each(const Surface& surface, const CornerUv& corner_uv);
+
 // For the vertices of one component. Throws SCALE_RANGE if a few of them are so far from all others that distances lose
 // all precision, as in meshes whose infinite coordinates Blender has replaced.
 void require_comparable(const Positions& positions);

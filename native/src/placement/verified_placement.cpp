@@ -8,6 +8,7 @@
 
 #include "base/lower_quartile.hpp"
 #include "cut/cut_graph.hpp"
+#include "lsgp/auto_unwrap.hpp"
 
 namespace lsgp {
 
@@ -228,7 +229,7 @@ ConeChoice VerifiedPlacement::choose_where_cheap(std::optional<AutomaticCones>& 
 
 // Of the cuts that join cones by what they cost, in square roots of the area, and of the cones as cuts.
 double VerifiedPlacement::cost(const ConeChoice& choice) const {
-  constexpr double cone_as_cut = 1.0 / 3;  // Weights.cones to Weights.cuts
+  const double cone_as_cut = Weights().cones / Weights().cuts;
   const PlacementTask& task = chooser_.task();
   const PerLoop<char> none_uncut(task.mesh.boundary_loops.size(), 0);
   const CutGraph cuts = connect_cones(task, inside_only(task.mesh, choice.vertices), none_uncut);

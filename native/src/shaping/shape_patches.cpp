@@ -316,10 +316,7 @@ ShapedMap shape_patches(const Surface& surface, const CornerUv& corner_uv, const
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   require_valid(surface);
-  if (corner_uv.rows() != surface.triangles.size()) {
-    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates for ",
-                                              surface.triangles.size(), " corners of triangles. Give one for each."));
-  }
+  require_one_each(surface, corner_uv);
   require_indices("triangle", request.triangles, surface.triangles.rows());
   require_indices("vertex", request.corners, surface.positions.rows());
   require_indices("corner", request.pinned, surface.triangles.size());

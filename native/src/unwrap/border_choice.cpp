@@ -65,8 +65,8 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
     if (given.are_free() && follows_features(surface, options)) {
       out.possible = crease_borders(surface, {}, creases, untimed);
       creases.least_share = nearly_all;
-      out.carry_all =
-          surface.features.rows() == 0 && crease_borders(surface, {}, creases, untimed).rows() == out.possible.rows();
+      out.carry_all = out.possible.rows() > 0 && surface.features.rows() == 0 &&
+                      crease_borders(surface, {}, creases, untimed).rows() == out.possible.rows();
     }
     return out;
   }

@@ -19,15 +19,16 @@ struct CreaseBorders {
   bool carry_all = false;
 };
 
+struct CreaseRules {
+  std::optional<Index> most_corners;  // of the preset
+  const VertexPairs& sharp;           // edges that are creases whatever their angle
+};
+
 // Bake requires those of all hard components; Paint those of components with curvature at more than 24 vertices, since
 // fewer can be cones, across which the texture continues. Both may gain by those of other components with half of their
 // curvature on creases, unless the number of cones is given. Seamless layouts on squares, as with Tile, may gain by
 // those of hard components where no cones or seams are marked. With straight borders or prescribed turning: none.
 // progress: without time of its own.  Throws what `crease_borders` throws.
-struct CreaseRules {
-  std::optional<Index> most_corners;  // of the preset
-  const VertexPairs& sharp;           // edges that are creases whatever their angle
-};
 CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given, const CreaseRules& rules,
                                  const MapOptions& options, const Progress& progress);
 

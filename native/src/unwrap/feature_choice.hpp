@@ -7,15 +7,16 @@
 
 namespace lsgp {
 
-// Through the given cones and others where these do not suffice: usual ones, symmetric ones, or those with which
-// features can run along u and v, or along the lattice of seamless layouts; of several components, only those have
-// cones for features that gain by them. Its findings are those to be told.
-// Throws what `parameterize` and `complete_cones` throw.
 struct GivenPlaces {
   const GivenCones& cones;
   Symmetry symmetry;
   const Pins& pins;
 };
+
+// Through the given cones and others where these do not suffice: usual ones, symmetric ones, or those with which
+// features can run along u and v, or along the lattice of seamless layouts; of several components, only those have
+// cones for features that gain by them. Its findings are those to be told.
+// Throws what `parameterize` and `complete_cones` throw.
 Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces& given, const MapOptions& options,
               Objective& objective, const Progress& progress);
 

@@ -51,9 +51,9 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   ProgressSteps steps(progress);
   std::exception_ptr failure;
   while (const std::optional<Estimate> next = most_promising(candidates)) {
-    const double bound = rank.has_defects() ? this->bound() : std::min(rank.cost, this->bound());
+    const double most = std::min(rank.has_defects() ? infinity : rank.cost, bound());
     const bool is_first = !best && !failure;
-    if (!is_first && bound < infinity && next->cost - error_of_estimates >= bound) break;
+    if (!is_first && most < infinity && next->cost - error_of_estimates >= most) break;
     const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
     const Candidate candidate = std::move(*place);
     candidates.erase(place);

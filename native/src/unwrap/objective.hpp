@@ -80,12 +80,12 @@ class Objective {
     bool is_better_than(const Rank& best) const;
   };
 
+  double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
+
   const Weights weights_;
   const SquareShare share_;
   std::vector<Choice> choices_;
-  double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
-
-  std::optional<Quality> rival_;
+  std::optional<Quality> rival_;  // of the bound
   Made best_so_far_;
   Rank rank_so_far_;
 };

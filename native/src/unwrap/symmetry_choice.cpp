@@ -89,7 +89,10 @@ std::optional<double> SymmetryChoice::expected(Kind kind) const {
   switch (kind) {
     case Kind::symmetric: return 0;
     case Kind::free_cuts: return expected_of_others(half_symmetric);
-    case Kind::usual: return made_.empty() ? Objective::infinity : expected_of_others(1);
+    case Kind::usual:
+      // Without cones these are the symmetric ones.
+      if (alike_ && alike_->cones.vertices.empty() && made(Kind::free_cuts) != nullptr) return {};
+      return made_.empty() ? Objective::infinity : expected_of_others(1);
     case Kind::partly: return expected_of_partly();
   }
   return {};
@@ -164,9 +167,7 @@ std::optional<double> SymmetryChoice::expected_of_others(double asymmetry) const
         return cost(one.quality, weights) < cost(other.quality, weights);
       });
   Quality other = best.quality;
-  // Without cones there are no others, and without cuts no other ones.
-  const bool has_cones = !best.map->cones.cones.vertices.empty();
-  if (other.cuts == 0 || (asymmetry == 1 && !has_cones && made(Kind::free_cuts) != nullptr)) return {};
+  if (other.cuts == 0) return {};  // so there are no other ones
   if (other.asymmetry > asymmetry * share_) return {};
   const double left = options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
   other.islands = std::max<double>(surface_.parts.count(), islands_of_others * other.islands);

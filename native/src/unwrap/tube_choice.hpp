@@ -15,15 +15,17 @@ namespace lsgp {
 Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
                 const Progress& progress);
 
-// The map of a surface that ends at the borders required at its creases, or at others that are possible: with its tubes
-// as they are or as strips, whichever costs less.
 struct EndsOfSurface {
   const CreaseBorders& creases;
   const Tubes& tubes;
 };
-// The map of a surface whose tubes become strips or not.
+
 enum class TubesBecome { strips, anything };
+// The map of a surface whose tubes become strips or not.
 using MakeWithTubes = std::function<Made(const std::shared_ptr<BorderedSurface>&, TubesBecome, const Progress&)>;
+
+// The map of a surface that ends at the borders required at its creases, or at others that are possible: with its tubes
+// as they are or as strips, whichever costs less.
 Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,
                    const Progress& progress);
 
