@@ -216,18 +216,23 @@ def test_a_large_island_is_turned_among_scraps_as_if_it_were_alone(scraps: int) 
     assert side(packed) <= 1.05 * side(alone) < 1.9
 
 
-@pytest.mark.parametrize("count", [100, 2_000, 20_000])
-def test_margins_of_many_islands_take_no_more_room_than_these(count: int) -> None:
+@pytest.mark.parametrize("count", [30, 300, 2_000, 20_000])
+def test_margins_of_many_islands_take_at_most_a_quarter_of_their_room(count: int) -> None:
     corner = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0]])
     positions = (np.random.default_rng(0).uniform(size=(count, 1, 3)) + corner).reshape(-1, 3)
     soup = lsgp.Surface(positions, np.arange(3 * count, dtype=np.int32).reshape(-1, 3))
     result = lsgp.auto_unwrap(soup, preset="paint")
-    assert coverage(result.corner_uv, result.island) > 0.25
+    filled = coverage(result.corner_uv, result.island)
+    assert filled > 0.4
     z = result.corner_uv @ [1, 1j]
     sides = np.stack([z, np.roll(z, -1, axis=1)], axis=2).reshape(-1, 2)
-    gap = packing_checks.least_gap(sides, np.repeat(result.island, 3), 9 / 1024)
-    # A texel at least; and as wide as usual as long as there is room.
-    assert gap >= (8 if count == 100 else 1) / 1024 * (1 - 1e-9)
+    texel = 1 / 1024
+    gap = packing_checks.least_gap(sides, np.repeat(result.island, 3), 9 * texel)
+    # A texel at least, and as wide as usual as long as there is room.
+    assert gap >= (8 if count == 30 else 1) * texel * (1 - 1e-9)
+    extent = np.ptp(result.corner_uv, axis=1).sum()
+    tenth = 1.1  # what layouts fill is told before they are made
+    assert gap < tenth * texel or gap * extent + count * gap**2 < tenth * 0.25 * filled
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
