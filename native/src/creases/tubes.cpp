@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/array.hpp"
 #include "creases/face_quads.hpp"
 #include "cut/cut_cost.hpp"
 
@@ -55,7 +56,7 @@ Rings::Rings(const HalfedgeMesh& mesh, const Array<Quad>& quads)
       rim_of_(mesh.halfedge_count(), none) {
   const Index count = static_cast<Index>(quads.size());
   for (Index q = 0; q < count; ++q) {
-    for (int s = 0; s < 4; ++s) side_of_[quads[q].side[s]] = 4 * q + s;
+    for (int s = 0; s < 4; ++s) side_of_[element(quads[q].side, s)] = 4 * q + s;
   }
   for (Index q = 0; q < count; ++q) {
     for (const int s : {0, 1}) add_ring(q, s);
@@ -70,15 +71,15 @@ void Rings::add_ring(Index quad, int side) {
     if (is_visited_[2 * q + s % 2]) return;  // of an open row
     is_visited_[2 * q + s % 2] = 1;
     ring.quads.push_back(q);
-    ring.rim[0].push_back(quads_[q].side[(s + 1) % 4]);
-    ring.rim[1].push_back(quads_[q].side[(s + 3) % 4]);
-    const Index beyond = mesh_.twin[quads_[q].side[(s + 2) % 4]];
+    ring.rim[0].push_back(element(quads_[q].side, (s + 1) % 4));
+    ring.rim[1].push_back(element(quads_[q].side, (s + 3) % 4));
+    const Index beyond = mesh_.twin[element(quads_[q].side, (s + 2) % 4)];
     at = beyond == none ? none : side_of_[beyond];
     if (at != 4 * quad + side) continue;
     if (!is_whole(ring)) return;
     const Index number = static_cast<Index>(rings_.size());
     for (const int rim : {0, 1}) {
-      for (const Index h : ring.rim[rim]) rim_of_[h] = 2 * number + rim;
+      for (const Index h : element(ring.rim, rim)) rim_of_[h] = 2 * number + rim;
     }
     rings_.push_back(std::move(ring));
     return;
@@ -94,14 +95,14 @@ bool Rings::is_whole(const Ring& ring) const {
   };
   Array<Index> ends[2];
   for (const int rim : {0, 1}) {
-    for (const Index h : ring.rim[rim]) ends[rim].push_back(mesh_.origin(h));
+    for (const Index h : element(ring.rim, rim)) ends[rim].push_back(mesh_.origin(h));
   }
   return are_distinct(ring.quads) && are_distinct(ends[0]) && are_distinct(ends[1]);
 }
 
 std::optional<std::pair<Index, int>> Rings::across(Index ring, int rim) const {
   Index found = none;
-  for (const Index h : rings_[ring].rim[rim]) {
+  for (const Index h : element(rings_[ring].rim, rim)) {
     const Index beyond = mesh_.twin[h];
     const Index there = beyond == none ? none : rim_of_[beyond];
     if (there == none || (found != none && there != found)) return std::nullopt;
@@ -148,7 +149,7 @@ double TubeSearch::area_of(const Ring& ring) const {
 
 double TubeSearch::girth(const Ring& ring, int rim) const {
   double out = 0;
-  for (const Index h : ring.rim[rim]) out += surface_.geometry.length[h];
+  for (const Index h : element(ring.rim, rim)) out += surface_.geometry.length[h];
   return out;
 }
 
@@ -181,7 +182,7 @@ Array<Tube> TubeSearch::find() const {
         is_used[ring] = 1;
         rings.push_back(ring);
       }
-      tube.end[direction] = all[ring].rim[rim];
+      element(tube.end, direction) = element(all[ring].rim, rim);
     }
     if (is_closed) continue;  // a torus
     tube.girth = {girth(all[r], 0), girth(all[r], 0)};
@@ -223,7 +224,7 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
       }
     }
     for (const Index q : tube.quads) {
-      for (const int side : {0, 2}) out.triangles.push_back(search.quads()[q].side[side] / 3);
+      for (const int side : {0, 2}) out.triangles.push_back(element(search.quads()[q].side, side) / 3);
     }
   }
   return out;

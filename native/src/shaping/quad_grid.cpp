@@ -95,7 +95,7 @@ Eigen::VectorXcd lay_on_grid(const MetricMesh& surface, GridSpacing spacing, Ind
   require_distinct(cells);
   std::array<Index, 2> low{0, 0}, high{0, 0};
   for (const Cell& cell : cells) {
-    for (const std::size_t axis : {0, 1}) {
+    for (const std::size_t axis : {0u, 1u}) {
       low[axis] = std::min(low[axis], cell.place[axis]);
       high[axis] = std::max(high[axis], cell.place[axis] + 1);
     }
