@@ -40,9 +40,10 @@ constexpr double operations_an_entry = 100;     // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
-// The patch of every triangle; the smallest ones are merged with the neighbor across the longest and flattest border.
-PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
-                                const Eigen::VectorXd& bend) {
+// The patch of every triangle; those with less than this share of the area are merged with the neighbor across the
+// longest and flattest border.
+PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
+                                double least_share) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   PerTriangle<Index> patch;
@@ -60,7 +61,7 @@ PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<cha
   for (Index p = 0; p < count; ++p) home[p] = p;
   // Where Gauss-Bonnet asks for more cones than can be placed, everything has to end at creases.
   const bool takes_cones = !mesh.closed() || quarter_turns * std::abs(mesh.euler) <= most_conditions;
-  const double least_area = takes_cones ? least_patch * geometry.total_area : 0;
+  const double least_area = takes_cones ? least_share * geometry.total_area : 0;
   using Entry = std::pair<double, Index>;
   LeastFirst<Entry> smallest;
   for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
@@ -119,15 +120,16 @@ class Patches {
   // Whether so much of the curvature lies where patches meet or at bevels, and at more than most_corners. Less is
   // enough where the others are the apexes of cones.
   bool carry_curvature(double least_share, Index most_corners) const {
-    PerVertex<char> there = bevels_.is_rounded;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) there[v] = there[v] || degree_[v] > 0;
-    const CreaseCurvature found({mesh_, geometry_}, there);
+    const CreaseCurvature found = curvature();
     if (!found.is_curved() || std::max(found.vertex_count(), found.vertex_count_at_creases()) <= most_corners) {
       return false;
     }
     if (found.is_carried(least_share)) return true;
     return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
+
+  // Whether so many vertices inside the patches have curvature that they cannot all be cones.
+  bool take_too_many_cones() const { return curvature().vertex_count_elsewhere() > most_conditions; }
 
   const Bevels& bevels() const { return bevels_; }
 
@@ -142,6 +144,12 @@ class Patches {
   }
 
  private:
+  CreaseCurvature curvature() const {
+    PerVertex<char> there = bevels_.is_rounded;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) there[v] = there[v] || degree_[v] > 0;
+    return CreaseCurvature({mesh_, geometry_}, there);
+  }
+
   struct Unfolded {
     PerHalfedge<char> open;
     Index joined;  // by how many there are fewer islands, about, once none lies over itself around a vertex
@@ -472,16 +480,20 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
       const bool is_marked = crease[h] && bend[h] < options.angle;
       bevels->crease[h] = bevels->edge[h] && !is_marked ? bevels->crease[h] && may_cut(mesh, h) : crease[h];
     }
-    out.emplace(surface, find_patches(surface, bevels->crease, bend), std::move(*bevels));
+    out.emplace(surface, find_patches(surface, bevels->crease, bend, least_patch), std::move(*bevels));
     if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
   }
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0);
-  Bevels no_bevels{nowhere, nowhere, PerVertex<char>(mesh.vertex_count(), 0)};
+  const Bevels no_bevels{nowhere, nowhere, PerVertex<char>(mesh.vertex_count(), 0)};
   const PerHalfedge<char> ends = with_frames_divided(surface, crease, bend, options.angle);
-  out.emplace(surface, find_patches(surface, ends, bend), std::move(no_bevels));
-  if (!out->carry_curvature(options.least_share, options.most_corners)) out.reset();
-  return out;
+  for (const double least_share : {least_patch, 0.0}) {
+    out.emplace(surface, find_patches(surface, ends, bend, least_share), no_bevels);
+    if (out->carry_curvature(options.least_share, options.most_corners)) return out;
+    // Of thousands of small patches, as the teeth of a comb have, the corners are all that is curved.
+    if (!out->take_too_many_cones()) break;
+  }
+  return std::nullopt;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ import meshes
 import numpy as np
 import pytest
 from hulls import hull
+from large_meshes import comb, of_polygons
 from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
@@ -444,3 +445,10 @@ def test_sides_of_extruded_outlines_become_bands(points: int, inner: float, heig
     result = lsgp.auto_unwrap(surface(mesh), preset="paint", pack="shelves")
     assert result.island.max() + 1 <= max(6, points - 2)
     assert result.distortion.l2_stretch <= 1.0005 and len(result.overlapping) == 0
+
+
+@pytest.mark.parametrize("teeth", [100, 1100])
+def test_every_corner_of_a_comb_lies_at_a_border_however_small_its_teeth_are(teeth: int) -> None:
+    """As cones its corners would be too many."""
+    solid = of_polygons(comb(teeth))
+    assert len(np.unique(lsgp.crease_borders(solid))) == len(solid.positions)
