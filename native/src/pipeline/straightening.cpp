@@ -43,7 +43,7 @@ bool overlaps(const CutSurface& surface, const ComponentMap& map) {
   }
   label_parts(mesh, surface.cut_graph.is_cut, part);
   const Eigen::VectorXcd corners = side_by_side(part, at_corners(surface.cut_mesh, map.position));
-  return has_overlap(corners, twin) && !find_overlaps(corners, twin).empty();
+  return !find_few_overlaps(corners, twin, 0, {});
 }
 
 // Whether all cuts are connected, boundaries included, so that each can be related to the others.

@@ -21,6 +21,7 @@ namespace {
 constexpr double explained_share = 1e-9;   // of a triangle's area that rounding of the map may put on another
 constexpr double operations_a_pair = 100;  // of triangles
 constexpr double last_digit = std::numeric_limits<double>::epsilon();
+constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 constexpr double explained_digits = 64 * last_digit;  // of a coordinate
 
 double length(Complex a) { return std::sqrt(std::norm(a)); }
@@ -94,16 +95,21 @@ class Layout {
     }
   }
 
-  Array<Overlap> find_overlaps() const {
+  // Those of different faces, or all if there are none; nothing if there are more than so many.
+  std::optional<Array<Overlap>> find_overlaps(std::size_t most, const PerTriangle<Index>& face) const {
     Array<Overlap> out;
-    AabbTree(boxes_).for_each_meeting_pair([&](Index i, Index j) {
+    const bool are_more = AabbTree(boxes_).any_meeting_pair([&](Index i, Index j) {
       checkpoint(operations_a_pair);
+      if (!face.empty() && face[triangle_[i]] == face[triangle_[j]]) return false;
       const double area = overlap(i, j);
-      if (!(area > 0)) return;
+      if (!(area > 0)) return false;
+      if (out.size() == most) return true;
       // A collapsed layout can have quadratically many pairs.
       if (out.size() == out.capacity()) require_memory(2.0 * static_cast<double>(out.size() * sizeof(Overlap)));
       out.push_back({triangle_[i], triangle_[j], area});
+      return false;
     });
+    if (are_more) return std::nullopt;
     std::sort(out.begin(), out.end(), [](const Overlap& a, const Overlap& b) {
       return a.first != b.first ? a.first < b.first : a.second < b.second;
     });
@@ -145,14 +151,19 @@ Box frame_of(const Eigen::VectorXcd& position) {
 }  // namespace
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
-  return Layout(position, [](const Box&) { return true; }).find_overlaps();
+  return *Layout(position, [](const Box&) { return true; }).find_overlaps(any_number, {});
 }
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
+  return *find_few_overlaps(position, twin, any_number, {});
+}
+
+std::optional<Array<Overlap>> find_few_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin,
+                                                std::size_t most, const PerTriangle<Index>& face) {
   const BoundaryPolygon boundary(position, twin);
-  if (!boundary.has_overlap()) return {};
+  if (!boundary.has_overlap()) return Array<Overlap>();
   const WindingRaster twice(boundary, frame_of(position), static_cast<Index>(twin.size() / 3));
-  return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps();
+  return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps(most, face);
 }
 
 bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {

@@ -14,7 +14,8 @@ namespace lsgp {
 namespace {
 
 constexpr double operations_an_entry = 500;
-// Among which a cut is searched beyond the budget; a few times those of the regions of such layouts.
+constexpr double most_found = 16;  // times that pairs are parts of conflicts, on average, before time runs out
+// Among which a cut is searched then; a few times those of the regions of such layouts.
 constexpr std::size_t faces_nearby = 1024;
 constexpr char inside = 1, rim = 2;  // marks of those
 
@@ -54,6 +55,7 @@ OverlapSplitter::Conflict OverlapSplitter::find_conflict(Index seed) {
   looked_through_.clear();
   for (const Index entry : out.entries) out.is_two_sided = out.is_two_sided && side_[pairs_.partner[entry]] == 0;
   for (const Index entry : out.entries) side_[pairs_.of[entry]] = 0;
+  found_ += static_cast<double>(out.entries.size());
   checkpoint(operations_an_entry * static_cast<double>(out.entries.size()));
   return out;
 }
@@ -77,7 +79,10 @@ OverlapSplitter::Region OverlapSplitter::find_region(const Array<Part>& parts) {
     }
   }
   if (largest == nullptr) return {};
-  if (two_sided == nullptr) return grow_region(*largest);
+  if (two_sided == nullptr) {
+    return grow_region(*std::max_element(largest->entries.begin(), largest->entries.end(),
+                                         [&](Index a, Index b) { return pairs_.shared[a] < pairs_.shared[b]; }));
+  }
   Region region;
   for (const Index entry : two_sided->entries) {
     region.first.push_back(pairs_.of[entry]);
@@ -86,10 +91,8 @@ OverlapSplitter::Region OverlapSplitter::find_region(const Array<Part>& parts) {
   return region;
 }
 
-// Grows from the pair with the largest shared area to half the distance at which the two sides would meet.
-OverlapSplitter::Region OverlapSplitter::grow_region(const Conflict& conflict) {
-  const Index seed = *std::max_element(conflict.entries.begin(), conflict.entries.end(),
-                                       [&](Index a, Index b) { return pairs_.shared[a] < pairs_.shared[b]; });
+// Grows from a pair to half the distance at which the two sides would meet.
+OverlapSplitter::Region OverlapSplitter::grow_region(Index seed) {
   const Index part = parts_.of_face[pairs_.of[seed]];
   Array<Index> grown{seed};
   depth_[seed] = 0;
@@ -163,15 +166,13 @@ void OverlapSplitter::divide(Index part, const Array<char>& is_first, Array<Part
   }
 }
 
-// Which of a part's faces are on the first side of the best cut between the two sides of a region.
-Array<char> OverlapSplitter::cut(const Array<Index>& faces, const Region& region) {
-  searched_ += static_cast<double>(faces.size());
-  if (searched_ > most_searches * graph_.face_count()) return cut_nearby(faces, region);
-  return cutter_.cut(faces, region.first, region.second).is_first;
+bool OverlapSplitter::has_taken_long() const {
+  return searched_ > most_searches * graph_.face_count() || found_ > most_found * static_cast<double>(pairs_.of.size());
 }
 
-// The same among the faces nearest to the first side, whose outermost ones stay on the second side.
-Array<char> OverlapSplitter::cut_nearby(const Array<Index>& faces, const Region& region) {
+// Which faces of a part are on the first side of the best cut between the two sides of a region, among those nearest to
+// the first side, whose outermost ones stay on the second side.
+Array<Index> OverlapSplitter::first_side_nearby(const Region& region) {
   const Index part = parts_.of_face[region.first.front()];
   Array<Index> scope = region.first, second;
   sort_unique(scope);
@@ -195,12 +196,27 @@ Array<char> OverlapSplitter::cut_nearby(const Array<Index>& faces, const Region&
   for (const Index face : scope) side_[face] = 0;
   std::sort(scope.begin(), scope.end());
   const MinimumCut cut = cutter_.cut(scope, region.first, second);
-  Array<char> out(faces.size(), 0);
-  auto at = scope.begin();
-  for (std::size_t i = 0; i < faces.size() && at != scope.end(); ++i) {
-    if (faces[i] == *at) out[i] = element(cut.is_first, at++ - scope.begin());
+  Array<Index> out;
+  for (std::size_t i = 0; i < scope.size(); ++i) {
+    if (cut.is_first[i]) out.push_back(scope[i]);
   }
   return out;
+}
+
+// Parts need not be connected then.
+void OverlapSplitter::split_pair_by_pair() {
+  Array<Index> entries;
+  for (Index entry = 0; entry < static_cast<Index>(pairs_.of.size()); ++entry) {
+    if (is_conflict_in(parts_.of_face[pairs_.of[entry]], entry)) entries.push_back(entry);
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [&](Index a, Index b) { return pairs_.shared[a] > pairs_.shared[b]; });
+  for (const Index entry : entries) {
+    if (!is_conflict_in(parts_.of_face[pairs_.of[entry]], entry)) continue;
+    before_cut_();
+    for (const Index face : first_side_nearby(grow_region(entry))) parts_.of_face[face] = parts_.count;
+    ++parts_.count;
+  }
 }
 
 FaceParts OverlapSplitter::split() {
@@ -208,13 +224,17 @@ FaceParts OverlapSplitter::split() {
   Array<Index> entries(pairs_.of.size());
   std::iota(entries.begin(), entries.end(), 0);
   add_conflicts(entries, parts);
-  for (;;) {
+  found_ = 0;
+  while (!has_taken_long()) {
     const Region region = find_region(parts);
     if (region.first.empty()) break;
     before_cut_();
     const Index part = parts_.of_face[region.first.front()];
-    divide(part, cut(parts[part].faces, region), parts);
+    const Array<Index>& faces = parts[part].faces;
+    searched_ += static_cast<double>(faces.size());
+    divide(part, cutter_.cut(faces, region.first, region.second).is_first, parts);
   }
+  split_pair_by_pair();
   return number_parts(graph_, parts_.of_face);
 }
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Divides a layout until no two faces of one part lie on each other.
+//
+// Cuts separate the largest conflicts of the parts first. Each cut takes time for its whole part and all of its
+// conflicts; where this adds up to a multiple of the layout and its pairs, the rest is divided pair by pair, by cuts
+// nearby.
 #pragma once
 
 #include <cstdint>
@@ -97,10 +101,11 @@ class OverlapSplitter {
   void add_conflicts(const Array<Index>& entries, Array<Part>& parts);
   Conflict find_conflict(Index seed);
   Region find_region(const Array<Part>& parts);
-  Region grow_region(const Conflict& conflict);
-  Array<char> cut(const Array<Index>& faces, const Region& region);
-  Array<char> cut_nearby(const Array<Index>& faces, const Region& region);
+  Region grow_region(Index seed);
   void divide(Index part, const Array<char>& is_first, Array<Part>& parts);
+  bool has_taken_long() const;
+  void split_pair_by_pair();
+  Array<Index> first_side_nearby(const Region& region);
 
   const FaceGraph& graph_;
   const OverlapPairs& pairs_;
@@ -108,6 +113,7 @@ class OverlapSplitter {
   const std::function<void()>& before_cut_;
   FaceParts parts_;
   double searched_ = 0;  // faces among which cuts were searched
+  double found_ = 0;     // pairs of the conflicts that were found
 
   // Scratch, as it is here between calls.
   Array<char> is_seen_;  // (entries) 0

@@ -16,6 +16,7 @@
 #include "plane/convex_hull.hpp"
 #include "split/merge_islands.hpp"
 #include "split/mirrored_islands.hpp"
+#include "split/own_overlaps.hpp"
 #include "split/split_overlaps.hpp"
 
 namespace lsgp {
@@ -38,18 +39,6 @@ struct Division {
   double one_sided;  // length of cuts without an image, where there is a mirror plane, in square roots of the area
   double cost() const { return price.total() + cost_of_one_side * one_sided; }
 };
-
-Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& map) {
-  PerHalfedge<Index> twin = mesh.twin;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (map.cut_graph.is_cut[h]) twin[h] = none;
-  }
-  Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  for (const Index f : map.validity.flipped) {
-    corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-  return find_overlaps(corners, twin);
-}
 
 // The islands of a division, each with its parts where they meet.
 struct IslandLayout {
@@ -163,32 +152,36 @@ class MapDivider {
   // ends: where the map is open, cuts included.
   MapDivider(const SplitRules& rules, const PerHalfedge<char>& ends, const ComponentMap& map, ProgressMonitor& monitor)
       : rules_(rules),
-        surface_{rules.surface(), ends},
+        ends_(ends),
         map_(map),
         monitor_(monitor),
-        overlaps_(find_own_overlaps(surface_.mesh, map)) {}
+        overlaps_(find_own_overlaps({rules.surface(), ends}, map)),
+        open_(ends) {
+    for (const Index h : overlaps_.ends) open_[h] = open_[rules.surface().mesh.twin[h]] = 1;
+  }
 
   bool is_whole() const { return overlaps_.empty(); }
-  double cost_before() const { return rules_.least_cost(surface_.open); }
+  double cost_before() const { return rules_.least_cost(ends_); }
 
   // costs: the surface, with the costs of further cuts.
   Division divide(CutCost rule, const MetricMesh& costs) const {
-    const HalfedgeMesh& mesh = surface_.mesh;
-    MapParts parts{surface_.open, {}, {}};
+    const HalfedgeMesh& mesh = rules_.surface().mesh;
+    MapParts parts{open_, {}, {}};
     const auto before_cut = [&] { monitor_.advance(0); };
-    const Array<Index> opened = split_overlaps({costs, surface_.open}, overlaps_, rule, before_cut);
+    const Array<Index> opened = split_overlaps({costs, open_}, overlaps_.pairs, rule, before_cut);
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
-    if (map_.rotation) merge_islands(surface_, map_, rules_.kept(), parts);
+    if (map_.rotation) merge_islands(rules_.surface(), map_, rules_.kept(), parts);
     return rules_.cheapest(map_, std::move(parts), [](const MapParts&) { return true; });
   }
 
  private:
   const SplitRules& rules_;
-  const OpenedSurface surface_;
+  const PerHalfedge<char>& ends_;
   const ComponentMap& map_;
   ProgressMonitor& monitor_;
-  const Array<Overlap> overlaps_;
+  const OwnOverlaps overlaps_;
+  PerHalfedge<char> open_;  // where the map or a piece of it ends
 };
 
 // Where a map is open: where it was before, and along its cuts.
@@ -345,7 +338,7 @@ Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) 
 
 bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMonitor& monitor, ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor, "split");
-  if (find_own_overlaps(surface.mesh, map).empty()) return false;
+  if (!overlaps_itself(surface.mesh, map)) return false;
   const SplitRules rules(surface, task, map);
   // The fastest rule selects among the recut maps. The map's own cuts compete with others, so that recutting never
   // costs more. All divisions are judged by the given costs of cuts, those found by length as well.

@@ -446,8 +446,9 @@ REVIEWED = {
             "a ring of faces, each once",
             SHORT,
         ),
-        ("for (;;)", "each cut parts a pair of triangles that lay on each other", OWN),
+        ("while (!has_taken_long())", "each cut parts a pair of triangles that lay on each other", OWN),
     ],
+    "split/own_overlaps.cpp": [("while (!waiting.empty())", "each round parts faces", WITHIN)],
     "split/part_merger.cpp": [
         ("while (!borders.empty())", "each round makes two parts one", OWN),
         ("for (auto border = borders.begin(); border != borders.end();)", "erases what it does not step over", SHORT),

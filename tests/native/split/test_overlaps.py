@@ -438,3 +438,13 @@ def test_polygons_of_thousands_of_corners_come_apart_from_their_neighbors() -> N
     flat = np.ptp(given.positions[given.triangles][..., 2], axis=1) == 0
     low = given.positions[given.triangles[:, 0], 2] == 0
     assert all(len(np.unique(found.island[flat & side])) == 1 for side in (low, ~low))
+
+
+@pytest.mark.slow
+def test_a_band_of_a_hundred_turns_comes_apart_into_about_as_many_islands() -> None:
+    """It lies on itself so often that it is halved before its overlaps are listed."""
+    turns = 100
+    mesh = wound(turns * PER_TURN, np.linspace(1, 2, 3))
+    found = lsgp.parameterize(lsgp.Surface(mesh.positions, mesh.triangles), [], None, SPLIT)
+    assert faults(mesh, found, SPLIT) == [] and found.warnings == []
+    assert turns <= found.island.max() + 1 <= 1.1 * turns
