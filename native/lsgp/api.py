@@ -259,7 +259,7 @@ def find_tubes(surface: Surface, cones: ArrayLike = (), *, progress: Progress | 
     Between its borders a tube unfolds into a strip with `Options.border` "strips". It ends where other faces than quads
     follow, or where the cone that a ring lies on develops into more than half a disk. A quad is two triangles on both
     sides of an edge that is not among `Surface.edges`; if that is None, on both sides of the longest edge of both.
-    Components with cones or marked seams have none.
+    Components with cones or marked seams have none, but for tubes that seams open from one end to the other.
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
     arguments.require_callable(progress)

@@ -101,8 +101,8 @@ class Options:
         map, and where a tube was laid out as a ring. Cones have to lie on seams that join them.
     border: "free": angles along boundaries are those of least distortion, and a cone there that has an angle is a
         corner; "straight": boundaries are straight from marked cone to marked cone; "strips": a tube, as
-        `find_tubes` finds, between two boundaries, without marked cones and seams, becomes a straight strip if its
-        girth is the same within a tenth all along; other boundaries are free.
+        `find_tubes` finds, between two boundaries, without marked cones and seams, or open along seams from one to the
+        other, becomes a straight strip if its girth is the same within a tenth all along; other boundaries are free.
     loop_turning: total turning of boundaries, radians, by any vertex on each; the others turn with least distortion. A
         free boundary about which the metric turns almost once, a hole, needs no cut and gets none; on surfaces without
         handles and cones all holes stay whole if that costs less than a tenth of L2 stretch.

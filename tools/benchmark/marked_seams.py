@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edges cut beyond the marked seams, on thirty seamed models; --write makes docs/reference/seams.md.
+"""Edges cut beyond the marked seams, on seamed models; --write makes docs/reference/seams.md.
 
     PYTHONPATH=tests python tools/benchmark/marked_seams.py [--write] [NAME ...]
 
-Ten models have seams by formula; on ten the islands of xatlas are turned into seams, and on ten those of Blender's
-Smart UV Project. NAME chooses some. Blender's Unwrap with Minimum Stretch goes by the same seams; it needs a Python
-with bpy, in BPY_PYTHON, and what needs it is left out otherwise. Needs the lsgp wheel, scipy and xatlas.
+Some models have seams by formula: four kinds at three sizes, ten more of each kind with other measures, and others; on
+the rest the islands of xatlas, uvunwrap, Paint and Bake are turned into seams, and those of Blender's Smart UV Project.
+NAME chooses some. Blender's Unwrap with Minimum Stretch goes by the same seams; it needs a Python
+with bpy, in BPY_PYTHON, and what needs it is left out otherwise. Needs the lsgp wheel, scipy, uvunwrap and xatlas.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import lsgp
 import meshes
 import numpy as np
 import zoo
+from beside_peers import by_uvunwrap
 from numpy.typing import NDArray
 from presets import by_xatlas
 from zoo.swept import circle, sweep
@@ -74,23 +76,50 @@ def main() -> None:
 
 def models() -> Iterator[tuple[str, lsgp.Surface]]:
     yield from by_formula()
+    yield from further_by_formula()
     yield from by_islands("xatlas", by_xatlas)
+    yield from by_islands("uvunwrap", by_uvunwrap)
+    yield from by_islands("Paint", lambda surface: lsgp.auto_unwrap(surface, preset="paint").corner_uv)
+    yield from by_islands("Bake", lambda surface: lsgp.auto_unwrap(surface, preset="bake").corner_uv)
     if "BPY_PYTHON" in os.environ:
         yield from by_islands("Smart UV", lambda surface: in_blender(surface, "SMART_PROJECT"))
 
 
 def by_formula() -> Iterator[tuple[str, lsgp.Surface]]:
-    for around, along in ((32, 1), (32, 8), (12, 4)):
+    for around, along in ((9, 1), (32, 1), (90, 1), (9, 8), (32, 8), (90, 8)):
         yield f"cylinder of {around} by {along}", capped(straight(along), around, 1.0)
     yield "cone frustum", capped(straight(6), 24, np.linspace(1, 0.4, 7))
-    yield "bent pipe", along_tube(bend(60), 12)
+    for along in (24, 80, 200):
+        yield f"bent pipe of 12 by {along}", along_tube(bend(along), 12)
     yield "bent pipe with caps", capped(bend(60), 12, 0.25)
     yield "spring", along_tube(helix(4, 160), 10)
-    yield "bumpy tyre in four", tyre(40, 16, 4)
+    for along in (20, 40, 80):
+        yield f"bumpy tyre of {along} by 16, in four", tyre(along, 16, 4)
     cube = meshes.cube(8)
     yield "cube, all sides", lsgp.Surface(cube.positions, cube.triangles, seams=folds(cube, 1.0))
     ball = meshes.bumpy_sphere(4)
     yield "bumpy ball in eight", lsgp.Surface(ball.positions, ball.triangles, seams=between_octants(ball))
+
+
+def further_by_formula() -> Iterator[tuple[str, lsgp.Surface]]:
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        around, along = int(rng.integers(5, 60)), int(rng.integers(1, 14))
+        taper, height = rng.uniform(0.4, 1.0), rng.uniform(0.05, 3.0)
+        path = straight(along) * [1, 1, height]
+        name = f"cylinder of {around} by {along}, {2 * height:.1f} high, narrowing to {taper:.2f}"
+        yield name, capped(path, around, np.linspace(1, taper, along + 1))
+    for _ in range(10):
+        around, along = int(rng.integers(6, 20)), int(rng.integers(20, 120))
+        t, wave = np.linspace(0, 1, along), rng.uniform(0, 1.5, 2)
+        path = np.stack([2 * t, wave[0] * np.sin(3 * t), 0.4 * wave[1] * np.cos(5 * t)], 1)
+        name = f"pipe of {around} by {along}, waves of {wave[0]:.2f} and {wave[1]:.2f}"
+        yield name, along_tube(path, around)
+    for _ in range(10):
+        parts = int(rng.integers(3, 6))
+        along, around, bumps = parts * int(rng.integers(4, 12)), int(rng.integers(8, 20)), rng.uniform(0, 0.25)
+        name = f"tyre of {along} by {around}, in {parts}, bumps of {bumps:.2f}"
+        yield name, tyre(along, around, parts, bumps)
 
 
 def straight(along: int) -> FloatArray:
@@ -138,10 +167,10 @@ def capped(path: FloatArray, around: int, radius: FloatArray | float) -> lsgp.Su
     return lsgp.Surface(mesh.positions, mesh.triangles, seams=np.concatenate(seams))
 
 
-def tyre(along: int, around: int, parts: int) -> lsgp.Surface:
+def tyre(along: int, around: int, parts: int, bumps: float = 0.15) -> lsgp.Surface:
     angle = 2 * np.pi * np.arange(along) / along
     path = np.stack([3 * np.cos(angle), 3 * np.sin(angle), 0.4 * np.sin(2 * angle)], 1)
-    mesh = tube(path, around, 0.8 * (1 + 0.15 * np.sin(3 * angle)), caps=False, closed=True)
+    mesh = tube(path, around, 0.8 * (1 + bumps * np.sin(3 * angle)), caps=False, closed=True)
     rings = [ring_at(place, around) for place in range(0, along, along // parts)]
     whole = np.concatenate([line_along(along, around), [[(along - 1) * around, 0]], *rings])
     return lsgp.Surface(mesh.positions, mesh.triangles, seams=whole)
@@ -272,7 +301,7 @@ def summary(rows: list[Row]) -> str:
             f" Beside Blender's *Unwrap* with *Minimum Stretch*, *Mine Only* is stretched no more on {sum(least)} of "
             f"{len(beside)} models and has as many islands on {sum(alike)}; the median of its excess of L2 stretch is "
             f"{ratio:.2f} of Blender's. Where it is stretched more, by up to "
-            f"{max(row.exact.l2 - row.blender.l2 for row in beside):.4f}, sides of islands were made straight."
+            f"{max(row.exact.l2 - row.blender.l2 for row in beside):.4f}, sides of islands were made straight, or tubes strips."
         )
     return text
 
@@ -282,9 +311,9 @@ def page(rows: list[Row]) -> str:
 
 Written by `python tools/benchmark/marked_seams.py --write`. What is cut besides the seams that are marked, with
 *Auto Unwrap*, *Paint*, and *Seams ▸ Mine Only* or *Mine and Automatic*, the default
-([what they mean](../how-to/cuts.md#marked-seams)). Ten models have seams by formula; on the others the islands of
-xatlas or of Blender's *Smart UV Project* are turned into seams. Blender's own *Unwrap* with *Minimum Stretch* goes by
-the same seams. L2 stretch is measured with each island at a scale of its own.
+([what they mean](../how-to/cuts.md#marked-seams)). On some models seams are marked by formula, on the others the
+islands of xatlas, uvunwrap, *Paint* and *Bake*, or of Blender's *Smart UV Project*, are turned into seams. Blender's own
+*Unwrap* with *Minimum Stretch* goes by the same seams. L2 stretch is measured with each island at a scale of its own.
 
 *Beyond* counts edges that are cut and not marked, with *Mine Only* also those marked and not cut. An asterisk marks
 models whose seams do not suffice: a chart is stretched by more than 5 % without cones, is no disk and stretched, or

@@ -60,8 +60,8 @@ enum class SeamMode {
 enum class BorderMode {
   free,      // angles along boundaries are those of least distortion; a cone there with an angle is a corner
   straight,  // boundaries are straight from marked cone to marked cone
-  strips,    // a tube between two boundaries, without marks, becomes a straight strip if its girth is the same within a
-             // tenth all along; other boundaries are free
+  strips,    // a tube between two boundaries, without marks, or open along seams from one to the other, becomes a
+             // straight strip if its girth is the same within a tenth all along; other boundaries are free
 };
 
 // The lattice of cones and translations in a seamless layout, and its rotations.

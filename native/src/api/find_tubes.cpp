@@ -2,6 +2,7 @@
 #include "assembly/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
+#include "creases/opened_tube.hpp"
 #include "creases/tubes.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
@@ -22,8 +23,12 @@ Tubes find_tubes(const Surface& surface, const std::vector<Index>& cones, const 
   Array<Index> borders;
   for_each_component(components, findings, monitor, [&](std::size_t i) {
     const Component& component = components[i];
-    if (!component.orientable || work.tasks[i].is_marked(component.mesh)) return;
+    if (!component.orientable) return;
+    const ComponentTask& task = work.tasks[i];
+    const bool is_marked = task.is_marked(component.mesh);
+    if (is_marked && (!component.mesh.is_disk() || task.is_marked_inside(component.mesh))) return;
     const Geometry geometry = require_geometry(component, findings);
+    if (is_marked && !girths_of_opened_tube({component.mesh, geometry})) return;
     const ComponentTubes tubes = find_component_tubes({component.mesh, geometry});
     append_ends(component, tubes.is_end, borders);
     for (const Index f : tubes.triangles) out.triangles.push_back(component.source_triangle[f]);

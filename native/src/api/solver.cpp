@@ -64,7 +64,6 @@ Options allowed_by_seams(Options options) {
   options.overlaps = Overlaps::keep;
   options.compact = Compactness::off;
   options.mirrored_cuts = false;
-  if (options.border == BorderMode::strips) options.border = BorderMode::free;
   return options;
 }
 

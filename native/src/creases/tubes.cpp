@@ -9,6 +9,7 @@
 
 #include "base/array.hpp"
 #include "creases/face_quads.hpp"
+#include "creases/opened_tube.hpp"
 #include "cut/cut_cost.hpp"
 
 namespace lsgp {
@@ -211,11 +212,15 @@ Array<Tube> TubeSearch::find() const {
 
 ComponentTubes find_component_tubes(const MetricMesh& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
+  ComponentTubes out{PerHalfedge<char>(mesh.halfedge_count(), 0), {}};
+  if (girths_of_opened_tube(surface)) {
+    for (Index f = 0; f < mesh.triangle_count(); ++f) out.triangles.push_back(f);
+    return out;
+  }
   const TubeSearch search(surface);
   const Array<Tube> tubes = search.find();
   double area = 0;
   for (const Tube& tube : tubes) area += tube.area;
-  ComponentTubes out{PerHalfedge<char>(mesh.halfedge_count(), 0), {}};
   if (area < least_share * surface.geometry.total_area) return out;
   for (const Tube& tube : tubes) {
     for (const Array<Index>& end : tube.end) {
@@ -233,12 +238,15 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
 TubeShape tube_shape(const MetricMesh& surface) {
   constexpr double most_even = 1.1;  // between girths: texel density is off by a twentieth at most
   const HalfedgeMesh& mesh = surface.mesh;
+  const auto shape_of = [](const std::array<double, 2>& girths) {
+    return girths[1] <= most_even * girths[0] ? TubeShape::even : TubeShape::tapering;
+  };
+  if (const auto girths = girths_of_opened_tube(surface)) return shape_of(*girths);
   if (!mesh.is_ring()) return TubeShape::none;
   const TubeSearch search(surface);
   const Array<Tube> tubes = search.find();
   if (tubes.empty() || 2 * ssize(tubes.front().quads) != mesh.triangle_count()) return TubeShape::none;
-  const auto [least, most] = tubes.front().girth;
-  return most <= most_even * least ? TubeShape::even : TubeShape::tapering;
+  return shape_of(tubes.front().girth);
 }
 
 }  // namespace lsgp

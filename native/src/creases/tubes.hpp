@@ -17,11 +17,11 @@ struct ComponentTubes {
 //
 // Quads are as of find_quads. A ring of them is closed across opposite sides, and a tube is a stack of rings joined
 // along whole rims. Where the cone that a ring lies on develops into more than half a disk, its inner end is closed
-// better than unrolled: tubes end there.
+// better than unrolled: tubes end there. A disk that is a tube, open along a line, has no further ends.
 ComponentTubes find_component_tubes(const MetricMesh& surface);
 
-// What a component is, from one boundary to the other: a tube of about the same girth all along, as a pipe is, one that
-// tapers, as a horn does, or none.
+// What a component is, from one boundary to the other, or open along a line between them: a tube of about the same
+// girth all along, as a pipe is, one that tapers, as a horn does, or none.
 enum class TubeShape { none, even, tapering };
 TubeShape tube_shape(const MetricMesh& surface);
 

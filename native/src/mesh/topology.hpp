@@ -43,6 +43,7 @@ struct HalfedgeMesh {
   Index origin(Index h) const { return triangles.data()[h]; }
   Index target(Index h) const { return triangles.data()[next(h)]; }
   bool closed() const { return boundary_loops.empty(); }
+  bool is_disk() const { return genus == 0 && boundary_loops.size() == 1; }
   bool is_ring() const { return genus == 0 && boundary_loops.size() == 2; }
   bool has_features() const { return !feature.empty(); }
 

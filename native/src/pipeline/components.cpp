@@ -67,7 +67,10 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
       own.vertices.push_back(v);
       own.angles.push_back(element(cones.angles, cone));
     }
-    tasks[c].may_be_strip = options.border == BorderMode::strips && !tasks[c].is_marked(component.mesh);
+    const bool is_marked = component.mesh.is_disk()
+                               ? tasks[c].is_marked_inside(component.mesh)
+                               : tasks[c].is_marked(component.mesh) || options.seams == SeamMode::exact;
+    tasks[c].may_be_strip = options.border == BorderMode::strips && !is_marked;
   }
   return tasks;
 }
@@ -278,6 +281,13 @@ bool ComponentTask::is_marked(const HalfedgeMesh& mesh) const {
          std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end();
 }
 
+bool ComponentTask::is_marked_inside(const HalfedgeMesh& disk) const {
+  for (Index h = 0; h < disk.halfedge_count(); ++h) {
+    if (disk.seam[h] && disk.twin[h] != none) return true;
+  }
+  return !cones.vertices.empty() || !border_cones.empty();
+}
+
 Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings, Work earlier) {
   if (earlier.topology.components.empty()) require_valid(request.surface);
   require_valid(request.surface, request.existing);
@@ -342,7 +352,8 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
 
 void become_strip(ComponentTask& tube) {
   tube.is_strip = true;
-  std::fill(tube.cones.loop_turning.begin(), tube.cones.loop_turning.end(), 0.0);
+  PerLoop<std::optional<double>>& turning = tube.cones.loop_turning;
+  if (turning.size() > 1) std::fill(turning.begin(), turning.end(), 0.0);
 }
 
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {

@@ -31,6 +31,8 @@ struct ComponentTask {
 
   // Whether there are marked cones or seams, which have precedence over what is found.
   bool is_marked(const HalfedgeMesh& mesh) const;
+  // The same of the inside of a disk; the boundary of one may be of seams that it is open along.
+  bool is_marked_inside(const HalfedgeMesh& disk) const;
 
   // What choices follow, or none.
   std::optional<FollowedStrokes> strokes() const {
@@ -94,7 +96,7 @@ Positions directions_on(const Component& component, const Positions& directions)
 bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int rotation_order,
                            std::optional<double> curvature, ComponentCones& cones);
 
-// Makes a component a strip: neither of its boundaries turns.
+// Makes a component a strip: of a tube neither boundary turns.
 void become_strip(ComponentTask& tube);
 
 // Whether the component is opened along its followed seams because it has no cones.

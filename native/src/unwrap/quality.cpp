@@ -61,8 +61,11 @@ double filled_boxes(const Result& result) {
   return room > 0 ? area_of(result, result.corner_uv) / room : 1;
 }
 
-// The share of the area that is in tubes of components with cones at these.
-double bent_tubes(const BorderedSurface& surface, const Result& result) {
+// The share of the area that is in tubes of components with cones, and in tubes that seams open and that may be as bent
+// as these are.
+double bent_tubes(const MadeMap& made) {
+  const BorderedSurface& surface = *made.surface;
+  const Result& result = made.result;
   const SurfaceParts& parts = surface.parts;
   if (!surface.in_tubes || !(parts.area() > 0)) return 0;
   const PerTriangle<char>& in_tubes = *surface.in_tubes;
@@ -70,6 +73,7 @@ double bent_tubes(const BorderedSurface& surface, const Result& result) {
   PerVertex<char> is_cone(parts.surface().positions.rows(), 0);
   for (const Index v : result.cones) is_cone[v] = 1;
   PerComponent<char> is_bent(parts.count(), 0);
+  if (made.border != BorderMode::strips) is_bent = with_seams(parts);
   for (Index f = 0; f < count; ++f) {
     const auto corners = parts.surface().triangles.row(f);
     const bool has_cone = is_cone[corners[0]] || is_cone[corners[1]] || is_cone[corners[2]];
@@ -102,7 +106,7 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   out.cones = count_by_area(parts, result.cones);
   out.empty = 1 / std::max(is_packed ? filled_when_packed(result, progress) : filled_boxes(result), least_filled) - 1;
   out.on_lattice = cost_on_lattice(result);
-  out.bent_tubes = bent_tubes(*made.surface, result);
+  out.bent_tubes = bent_tubes(made);
   return out;
 }
 

@@ -96,6 +96,16 @@ PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs
   return out;
 }
 
+PerComponent<char> with_seams(const SurfaceParts& parts) {
+  const VertexPairs& seams = parts.surface().seams;
+  PerComponent<char> out(parts.count(), 0);
+  for (Index e = 0; e < seams.rows(); ++e) {
+    const Index f = parts.triangle_at(seams(e, 0), seams(e, 1));
+    if (f != none && parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] = 1;
+  }
+  return out;
+}
+
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices) {
   PerComponent<Index> out(parts.count(), 0);
   for (const Index v : vertices) count_in(parts.of_vertex()[v], out);

@@ -57,6 +57,9 @@ PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& ed
 // are above 1 as well.
 PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs& cuts);
 
+// Whether each has marked seams.
+PerComponent<char> with_seams(const SurfaceParts& parts);
+
 // How many of the vertices, triangles, islands and defects each component has.
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices);
 PerComponent<Index> triangles_on(const SurfaceParts& parts);

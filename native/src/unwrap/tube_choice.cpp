@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "unwrap/tube_choice.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -27,6 +29,17 @@ VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, co
     const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
     return f == none || parts.of_triangle()[f] == none || !has_tubes[parts.of_triangle()[f]];
   });
+}
+
+// Those that seams open, which end nowhere else.
+void keep_opened(const Surface& surface, Tubes& tubes) {
+  if (tubes.triangles.empty()) return;
+  const SurfaceParts parts{std::cref(surface)};
+  const PerComponent<char> has_seams = with_seams(parts);
+  const auto is_other = [&](Index f) { return parts.of_triangle()[f] == none || !has_seams[parts.of_triangle()[f]]; };
+  std::vector<Index>& own = tubes.triangles;
+  own.erase(std::remove_if(own.begin(), own.end(), is_other), own.end());
+  tubes.borders.resize(0, 2);
 }
 
 // Of the area, what is in tubes.
@@ -63,8 +76,10 @@ Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOption
                 const Progress& progress) {
   if (options.of_map.seamless) return {};
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
-  if (!is_plain || options.of_map.seams == SeamMode::exact || given.count || !pins.corners.empty()) return {};
-  return find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
+  if (!is_plain || given.count || !pins.corners.empty()) return {};
+  Tubes out = find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
+  if (options.of_map.seams == SeamMode::exact) keep_opened(surface, out);
+  return out;
 }
 
 Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,

@@ -10,7 +10,7 @@
 namespace lsgp {
 
 // The tubes of a surface, which may become strips. None in seamless layouts, whose cuts are to be invisible, and none
-// with straight or turning borders, pins, a number of cones, or seams that alone are cut.
+// with straight or turning borders, pins or a number of cones; where seams alone are cut, those that these open.
 // progress: without time of its own.  Throws what `find_tubes` throws.
 Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
                 const Progress& progress);

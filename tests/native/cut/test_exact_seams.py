@@ -259,3 +259,35 @@ def test_nothing_else_that_is_asked_for_adds_cuts(name: str, more: dict) -> None
     for seams in ("exact", "follow"):
         result = lsgp.auto_unwrap(marked, preset=name, options=preset(name, seams), **more)
         assert pairs(result.cut_edges) == pairs(marked.seams) and len(result.cones) == 0
+
+
+@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("with_what", ["strokes", "features", "pins"])
+def test_only_the_seams_are_cut_with_strokes_features_and_pins(name: str, with_what: str) -> None:
+    marked = cylinder()
+    options = preset(name, "exact")
+    pins = None
+    if with_what == "strokes":
+        up = np.tile([0.0, 0.0, 1.0], (len(marked.triangles), 1))
+        marked, options = replace(marked, directions=up), replace(options, follow_strokes=True)
+    elif with_what == "features":
+        [wall] = [chart.triangles for chart in lsgp.measure_charts(marked) if len(chart.triangles) > 16]
+        edges = np.array(sorted(pairs(meshes.edges_of(marked.triangles[wall])) - pairs(marked.seams)), np.int32)
+        across = np.ptp(marked.positions[edges], axis=1)
+        marked = replace(marked, features=edges[(across[:, :2] < 0.05).all(axis=1)][:6])
+        assert len(marked.features) == 6
+    else:
+        pins = lsgp.Pins(np.array([0, 60]), np.array([[0.0, 0.0], [0.5, 0.5]]))
+    if pins is not None and name == "tile":
+        with pytest.raises(lsgp.InputError, match="seamless layout"):
+            lsgp.auto_unwrap(marked, preset=name, options=options, pins=pins)
+        return
+    result = lsgp.auto_unwrap(marked, preset=name, options=options, pins=pins)
+    assert pairs(result.cut_edges) == pairs(marked.seams) and len(result.cones) == 0
+    if with_what == "strokes":
+        assert result.direction_error is not None and result.direction_error < 0.05
+    elif with_what == "features":
+        assert result.features is not None
+        assert result.features.share == 1 or "FEATURES_RELEASED" in codes(result.warnings)
+    elif pins is not None:
+        np.testing.assert_allclose(result.corner_uv.reshape(-1, 2)[pins.corners], pins.uv, atol=1e-9)

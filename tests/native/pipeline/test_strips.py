@@ -9,7 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from map_checks import surface
+from map_checks import pairs, surface
 from meshes import Mesh
 from zoo.swept import circle, pipe, sweep
 
@@ -193,6 +193,46 @@ def test_without_the_wish_a_pipe_gets_cones_where_these_stretch_it_less(preset: 
     usual, unrolled = (lsgp.auto_unwrap(mesh, preset=preset, weights=how) for how in (weights, None))
     assert len(usual.cones) > 0 == len(unrolled.cones)
     assert usual.distortion.l2_stretch < unrolled.distortion.l2_stretch
+
+
+def opened(mesh: lsgp.Surface, around: int, along: int) -> lsgp.Surface:
+    """A tube with a marked seam along it, and others around its ends."""
+    line, ring = around * np.arange(along), np.arange(around)
+    rims = [np.stack([at + ring, at + np.roll(ring, -1)], 1) for at in (0, around * along)]
+    return replace(mesh, seams=np.concatenate([np.stack([line, line + around], 1), *rims]).astype(np.int32))
+
+
+@pytest.mark.parametrize("seams", ["exact", "follow"])
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+@pytest.mark.parametrize("caps", [False, True])
+@pytest.mark.parametrize(("around", "along", "bend"), [(8, 24, 0.0), (12, 40, 1.5), (12, 120, 1.5), (16, 60, 1.0)])
+def test_a_pipe_that_seams_open_is_a_rectangle(
+    around: int, along: int, bend: float, caps: bool, preset: lsgp.Preset, seams: str
+) -> None:
+    mesh = opened(of_pipe(around, along, bend, caps), around, along)
+    if not caps:
+        mesh = replace(mesh, seams=mesh.seams[:along])
+    result = lsgp.auto_unwrap(mesh, preset=preset, options=replace(lsgp.preset_options(preset), seams=seams))
+    assert pairs(result.cut_edges) == pairs(mesh.seams) and not len(result.cones)
+    assert off_any_rectangle(result, np.arange(2 * around * along)) < 1e-5
+    assert result.distortion.l2_stretch < 1.05
+
+
+def test_a_cone_that_a_seam_opens_stays_a_sector() -> None:
+    mesh = replace(horn(16, 40, 0.5), seams=np.stack([16 * np.arange(40), 16 * np.arange(1, 41)], 1).astype(np.int32))
+    result = lsgp.auto_unwrap(mesh)
+    assert result.distortion.l2_stretch < 1.001
+    assert off_any_rectangle(result, np.arange(len(mesh.triangles))) > 0.1
+
+
+def test_a_hilly_grid_that_seams_bound_is_no_tube() -> None:
+    hill = meshes.hill(10, height=1.0)
+    other = meshes.hill(10, height=0.0)
+    both = lsgp.Surface(
+        np.concatenate([hill.positions, other.positions]),
+        np.concatenate([hill.triangles, other.triangles + len(hill.positions)]),
+    )
+    assert not len(lsgp.find_tubes(both).triangles)
 
 
 def test_horns_and_balls_stay_as_they_are_cut_best() -> None:
