@@ -301,7 +301,8 @@ def summary(rows: list[Row]) -> str:
             f" Beside Blender's *Unwrap* with *Minimum Stretch*, *Mine Only* is stretched no more on {sum(least)} of "
             f"{len(beside)} models and has as many islands on {sum(alike)}; the median of its excess of L2 stretch is "
             f"{ratio:.2f} of Blender's. Where it is stretched more, by up to "
-            f"{max(row.exact.l2 - row.blender.l2 for row in beside):.4f}, sides of islands were made straight, or tubes strips."
+            f"{max(row.exact.l2 - row.blender.l2 for row in beside):.4f}, sides of islands were made straight, "
+            "or tubes strips."
         )
     return text
 
@@ -311,9 +312,9 @@ def page(rows: list[Row]) -> str:
 
 Written by `python tools/benchmark/marked_seams.py --write`. What is cut besides the seams that are marked, with
 *Auto Unwrap*, *Paint*, and *Seams ▸ Mine Only* or *Mine and Automatic*, the default
-([what they mean](../how-to/cuts.md#marked-seams)). On some models seams are marked by formula, on the others the
-islands of xatlas, uvunwrap, *Paint* and *Bake*, or of Blender's *Smart UV Project*, are turned into seams. Blender's own
-*Unwrap* with *Minimum Stretch* goes by the same seams. L2 stretch is measured with each island at a scale of its own.
+([what they mean](../how-to/cuts.md#marked-seams)). On some models seams are marked by formula, on the others the islands
+of xatlas, uvunwrap, *Paint*, *Bake* or Blender's *Smart UV Project* are turned into seams. Blender's own *Unwrap* with
+*Minimum Stretch* goes by the same seams. L2 stretch is measured with each island at a scale of its own.
 
 *Beyond* counts edges that are cut and not marked, with *Mine Only* also those marked and not cut. An asterisk marks
 models whose seams do not suffice: a chart is stretched by more than 5 % without cones, is no disk and stretched, or
