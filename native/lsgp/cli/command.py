@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
@@ -50,7 +51,12 @@ OUTPUT = "the file, or - for standard output"
 class _Parser(argparse.ArgumentParser):
     """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer. A message
     that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed. It has two lines:
-    argparse's own has thirty of usage before the reason."""
+    argparse's own has thirty of usage before the reason. Negative numbers may have exponents; to argparse these are
+    options."""
+
+    def __init__(self, **further: Any) -> None:
+        super().__init__(**further)
+        self._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$", re.IGNORECASE)
 
     def print_help(self, file: TextIO | None = None) -> None:
         say(sys.stdout if file is None else file, self.format_help().rstrip("\n"))

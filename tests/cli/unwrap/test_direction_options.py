@@ -163,3 +163,11 @@ def test_options_that_contradict_each_other(lsgp, cube_files: Path) -> None:
         assert refused.code == 2 and "--up takes finite numbers" in refused.err
     missing = lsgp(*UNWRAP, "--directions", "none.json")
     assert missing.code == 2 and "none.json" in missing.err
+
+
+def test_negative_numbers_with_exponents_are_no_options(lsgp, cube_files: Path) -> None:
+    def written(*up: str) -> bytes:
+        assert lsgp(*UNWRAP, "--seamless", "--up", *up).code == 0
+        return (cube_files / "out.obj").read_bytes()
+
+    assert written("-1e-1", "-.2E0", "-3.e-1") == written("-0.1", "-0.2", "-0.3")
