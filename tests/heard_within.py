@@ -12,6 +12,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import math
 import signal
 import sys
 import time
@@ -114,6 +115,18 @@ def _stacks(surface: lsgp.Surface) -> Call:
     return lambda tell: lsgp.find_stacks(of.corner_uv, of.island, mirrored=True, progress=tell)
 
 
+def _shape(shape: Any, share: float = 1.0) -> Callable[[lsgp.Surface], Call]:
+    """Of the first triangles of the largest island."""
+
+    def job(surface: lsgp.Surface) -> Call:
+        of = _map_of(surface)
+        largest = np.flatnonzero(of.island == np.bincount(of.island[of.solved]).argmax())
+        some = largest[: math.ceil(share * len(largest))]
+        return lambda tell: lsgp.shape_patches(surface, of.corner_uv, some, shape, progress=tell)
+
+    return job
+
+
 def _costs(surface: lsgp.Surface) -> Call:
     with_edges = dataclasses.replace(surface, edges=edges_of(surface.triangles))
     return lambda tell: lsgp.cut_costs(with_edges, [0.0, -1.0, 0.2], progress=tell)
@@ -143,6 +156,14 @@ JOBS: dict[str, Callable[[lsgp.Surface], Call]] = {
     "borders": lambda surface: lambda tell: lsgp.crease_borders(surface, progress=tell),
     "cuts": lambda surface: lambda tell: lsgp.find_cuts(surface, _scattered(surface), progress=tell),
     "angles": lambda surface: lambda tell: lsgp.prescribe_curvature(surface, _scattered(surface), progress=tell),
+    "charts": lambda surface: lambda tell: lsgp.measure_charts(surface, lsgp.Options(), progress=tell),
+    "tubes": lambda surface: lambda tell: lsgp.find_tubes(surface, progress=tell),
+    "rectangle": _shape("rectangle"),
+    "part of rectangle": _shape("rectangle", 0.3),
+    "grid": _shape("grid"),
+    "strips": _auto(options=lsgp.Options(border="strips", overlaps="split")),
+    "upright": _auto(up=[0.0, 1.0, 0.0]),
+    "limited": _auto(seconds=1e9),
     "preview": lambda surface: lambda tell: lsgp.Preview(surface, progress=tell) and None,
 }
 

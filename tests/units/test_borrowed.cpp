@@ -5,6 +5,7 @@
 
 #include <type_traits>
 
+#include "base/progress_monitor.hpp"
 #include "mesh/point_tree.hpp"
 #include "systems/cut_factor.hpp"
 
@@ -13,6 +14,8 @@ static_assert(std::is_constructible_v<lsgp::PointTree, const lsgp::Positions&>);
 static_assert(!std::is_constructible_v<lsgp::PointTree, lsgp::Positions>);
 static_assert(std::is_constructible_v<lsgp::CutFactor, const lsgp::MetricMesh&, const lsgp::CutGraph&>);
 static_assert(!std::is_constructible_v<lsgp::CutFactor, const lsgp::MetricMesh&, lsgp::CutGraph>);
+static_assert(std::is_constructible_v<lsgp::ProgressMonitor, const lsgp::Progress&, lsgp::StageSeconds&>);
+static_assert(!std::is_constructible_v<lsgp::ProgressMonitor, lsgp::Progress, lsgp::StageSeconds&>);
 
 TEST_CASE("a borrowed object is referred to, not copied") {
   int lent = 1;

@@ -59,7 +59,8 @@ std::vector<Chart> measure_charts(const Surface& surface, const Options& options
   };
   const std::optional<Result> map = map_along_seams(surface, options, share_of(0, of_map));
   StageSeconds seconds;
-  ProgressMonitor monitor(share_of(of_map, 1), seconds);
+  const Progress rest = share_of(of_map, 1);
+  ProgressMonitor monitor(rest, seconds);
   Options opened;
   opened.seams = SeamMode::boundary;
   std::vector<Finding> unsaid;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "base/borrowed.hpp"
 #include "base/checkpoint.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/stage_seconds.hpp"
@@ -12,7 +13,7 @@ namespace lsgp {
 
 class ProgressMonitor {
  public:
-  ProgressMonitor(const Progress& progress, StageSeconds& seconds)
+  ProgressMonitor(Borrowed<const Progress> progress, StageSeconds& seconds)
       : progress_(progress), seconds_(seconds), visitor_([this] { tick(); }) {}
   ProgressMonitor(const ProgressMonitor&) = delete;
   ProgressMonitor& operator=(const ProgressMonitor&) = delete;
