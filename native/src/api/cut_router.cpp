@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -204,9 +205,15 @@ std::vector<Index> overlapping_triangles(const CornerUv& corner_uv) {
     throw Error(Code::wrong_parameter,
                 concat("There are ", corner_uv.rows(), " texture coordinates. Give three for each triangle."));
   }
+  double largest = 0;
+  for (const double coordinate : corner_uv.reshaped()) {
+    if (std::isfinite(coordinate)) largest = std::max(largest, std::abs(coordinate));
+  }
+  // Areas of any size are numbers then.
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
   Eigen::VectorXcd position(corner_uv.rows());
   for (Eigen::Index corner = 0; corner < position.size(); ++corner) {
-    position[corner] = {corner_uv(corner, 0), corner_uv(corner, 1)};
+    position[corner] = {std::scalbn(corner_uv(corner, 0), -exponent), std::scalbn(corner_uv(corner, 1), -exponent)};
   }
   std::vector<Index> out;
   for (const Overlap& pair : find_overlaps(position)) out.insert(out.end(), {pair.first, pair.second});

@@ -277,8 +277,10 @@ def test_paths_that_are_none(path, cut, code):
     assert caught.value.code == code
 
 
-def test_triangles_on_others_are_found():
+@pytest.mark.parametrize("size", [1.0, 1e-300, 1e-170, 1e160, 1e300, 2e307])
+def test_triangles_on_others_are_found(size):
+    """Their areas need not be numbers, nor the width of all."""
     corner = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    layout = np.array([corner, corner + 5, corner + 0.25, corner + np.nan, corner[[1, 2, 0]] - [1, 0]])
-    assert lsgp.overlapping_triangles(layout).tolist() == [0, 2]
+    layout = np.array([corner, corner + 5, corner + 0.25, corner + np.nan, corner[[1, 2, 0]] - [1, 0], corner - 8])
+    assert lsgp.overlapping_triangles(size * layout).tolist() == [0, 2]
     assert lsgp.overlapping_triangles(np.empty((0, 3, 2))).tolist() == []
