@@ -50,7 +50,7 @@ OPTIONS = [
 class NoWorkers:
     """In place of the processes of a batch: every asset fails at once."""
 
-    def __init__(self, *_: Any) -> None:
+    def __init__(self, *_: Any, **_named: Any) -> None:
         pass
 
     def run(self, assets: Iterable[Any]) -> Iterator[Record]:
