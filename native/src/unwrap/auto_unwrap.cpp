@@ -19,6 +19,7 @@
 #include "unwrap/progress_share.hpp"
 #include "unwrap/time_limit.hpp"
 #include "unwrap/tube_choice.hpp"
+#include "unwrap/unfolded_parts.hpp"
 
 namespace lsgp {
 
@@ -140,8 +141,11 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     return best_of_tubes(surface, {creases, tubes}, make, objective, share);
   };
   const Made best = best_in_time(limit, objective, of_map, [&] {
-    const Made undivided = best_for_strokes(surface, of_map, mapped, of_maps);
-    return is_pinned ? undivided : best_division(undivided, of_map, objective, of_maps);
+    const Made usual = best_for_strokes(surface, of_map, mapped, of_maps);
+    if (is_pinned) return usual;
+    const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact;
+    const Made whole = may_end ? with_unfolded_parts(usual, of_map, objective, share_of(of_maps, 1, 1)) : usual;
+    return best_division(whole, of_map, objective, of_maps);
   });
 
   Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),

@@ -60,6 +60,7 @@ Made best_division(const Made& usual, const MapOptions& options, Objective& obje
   fewer.of_map.compact = compact == Compactness::sparing ? Compactness::off : Compactness::sparing;
 
   const auto expected_further = [&]() -> std::optional<double> {
+    if (1 / (1 + quality.empty) >= most_filled(compact)) return {};
     const double islands = std::max(quality.islands + 1, whole + (quality.islands - whole) * further_islands.islands);
     return cost(with_islands(quality, islands, further_islands.filled, compact), objective.weights());
   };

@@ -33,10 +33,8 @@ std::optional<Estimate> most_promising(const std::vector<Candidate>& candidates)
 }  // namespace
 
 bool Objective::Rank::is_better_than(const Rank& best) const {
-  // What is less is rounding, which is to decide nothing: the first of two such candidates is taken.
-  constexpr double rounding = 0.01;
   const auto flaws = std::tie(left_out, defects), of_best = std::tie(best.left_out, best.defects);
-  return flaws < of_best || (flaws == of_best && cost < best.cost - rounding);
+  return flaws < of_best || (flaws == of_best && cost < best.cost - rounding_of_costs);
 }
 
 Quality Objective::quality(MadeMap& made, const Progress& progress, double asymmetry) const {

@@ -18,6 +18,9 @@ namespace lsgp {
 // low, so that more than this gains nothing.
 constexpr double error_of_estimates = 0.15;
 
+// A smaller difference of costs is to decide nothing: the first of two such candidates is taken.
+constexpr double rounding_of_costs = 0.01;
+
 // One of several maps to choose from.
 struct Candidate {
   std::string name;  // for the trace

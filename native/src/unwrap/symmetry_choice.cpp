@@ -174,7 +174,18 @@ std::optional<double> SymmetryChoice::expected_of_others(double asymmetry) const
   other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));
   other.asymmetry = asymmetry * share_;
   other.on_lattice = cost_on_even_lattice(best.map->result);
+  if (!may_cost_less(best, other)) return {};
   return cost(other, weights);
+}
+
+// Whether a map could cost less than one that is made if all went well: with no stretch, cuts or cones, and as few
+// islands as there are components. Of maps without any of these all are alike.
+bool SymmetryChoice::may_cost_less(const MadeCandidate& made, Quality other) const {
+  if (made.quality.left_out > 0 || made.quality.defects > 0) return true;
+  other.islands = std::min<double>(made.quality.islands, surface_.parts.count());
+  other.stretch = other.cuts = other.costly_cuts = other.cones = other.bent_tubes = 0;
+  const Weights& weights = objective_.weights();
+  return cost(other, weights) < cost(made.quality, weights) - rounding_of_costs;
 }
 
 std::optional<double> SymmetryChoice::expected_of_partly() const {

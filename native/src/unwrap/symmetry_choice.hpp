@@ -54,6 +54,8 @@ class SymmetryChoice {
   // Of maps with other cones or cuts than those that were made: stretched as much, unless that is more than cones are
   // placed for, with three quarters of the islands.
   std::optional<double> expected_of_others(double asymmetry) const;
+  // Whether it could cost less than one that is made, if all went well.
+  bool may_cost_less(const MadeCandidate& made, Quality other) const;
   // Where both of the other ones were made: the sum over components, which is known.
   std::optional<double> expected_of_partly() const;
 

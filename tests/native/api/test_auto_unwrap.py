@@ -181,3 +181,24 @@ def test_edges_that_may_not_be_cut_are_not_cut() -> None:
     result = auto_unwrap(surface(both, edges=edges), cube.cones)
     allowed = {tuple(edge) for edge in np.sort(edges, axis=1).tolist()}
     assert {tuple(edge) for edge in np.sort(result.cut_edges, axis=1).tolist()} <= allowed
+
+
+def pierced_plate() -> Surface:
+    """A plate around a bar, each closed, which touch at two vertices, as exporters leave faces with holes."""
+    x, y, z = 2.1148, 1.6989, 0.1714
+    plate = [(-x, -y, 0), (x, -y, 0), (x, -y, z), (x, y, 0), (x, y, z), (-x, y, 0), (-x, y, z), (-x, -y, z)]
+    bar = [(-0.1035, 0.1788, 0), (0.2066, 0, 0), (0.2066, 0, z), (-0.103, -0.1791, 0), (-0.103, -0.1791, z)]
+    sides = [(0, 1, 2), (1, 3, 4), (3, 5, 6), (5, 0, 7), (0, 2, 7), (1, 4, 2), (3, 6, 4), (5, 7, 6)]
+    walls = [(8, 9, 10), (9, 11, 12), (11, 8, 13), (8, 10, 13), (9, 12, 10), (11, 13, 12), (11, 9, 8)]
+    flat = [(7, 2, 4), (7, 4, 6), (11, 0, 5), (11, 5, 3), (11, 3, 1), (11, 1, 0), (7, 12, 13), (7, 13, 10), (7, 10, 12)]
+    corners = [*plate, *bar, (-0.1035, 0.1788, z)]
+    return Surface(np.array(corners), np.array([*sides, *walls, *flat], np.int32))
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_parts_without_a_map_are_cut_until_they_have_one(preset: str) -> None:
+    given = pierced_plate()
+    result = auto_unwrap(given, preset=preset)
+    assert result.solved.all() and not len(result.flipped) and not len(result.overlapping)
+    ended = replace(given, borders=result.borders)
+    assert undeclared_faults(ended, result, lsgp.preset_options(preset)) == []

@@ -39,3 +39,14 @@ def test_the_trace_says_of_each_map_what_it_was_expected_to_cost_and_did() -> No
     assert min(choice.cost for choice in choices if choice.cost is not None) == pytest.approx(
         [choice.cost for choice in choices if choice.is_best][-1], abs=0.01
     )
+
+
+def test_no_map_is_made_that_could_not_cost_less_if_all_went_well() -> None:
+    ring = meshes.cylinder()
+    small = ring._replace(positions=0.02 * ring.positions)
+    patches = surface(meshes.merge([meshes.grid()] * 40 + [small]))
+    result = lsgp.auto_unwrap(patches)
+    assert len(result.cones) == 0 < len(result.cut_edges)
+    made = {choice.name for choice in result.choices if choice.cost is not None}
+    assert "symmetric cones and cuts" in made
+    assert not made & {"symmetric cones, other cuts", "usual cones", "further islands"}
