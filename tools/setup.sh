@@ -126,7 +126,7 @@ install_in_python() {
 # The Python that runs all tests, in $venv.
 set_up_test_python() {
     set_up_python "$venv" 'numpy' 'scipy' 'pytest' 'hypothesis' 'ruff' 'distributed' 'quickjs' 'openjd-cli' 'pytest-xdist' \
-        'plyfile' 'trimesh' 'meshio' 'libigl' 'pyvista' 'opencv-python-headless' \
+        'plyfile' 'trimesh' 'meshio' 'libigl' 'pyvista' 'opencv-python-headless' 'manifold3d' \
         'cmake' 'ninja' 'clang-format==19.1.7' 'mkdocs-material' 'mypy' 'basedpyright' 'scikit-build-core'
 }
 

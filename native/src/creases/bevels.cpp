@@ -2,6 +2,7 @@
 #include "creases/bevels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -31,36 +32,84 @@ PerHalfedge<char> marked(const HalfedgeMesh& mesh, Is is) {
   return out;
 }
 
+// The extent of flat faces across their edges, from the vertices that are outermost in thirteen directions and those
+// opposite to them: the corners of strips are among these.
+class Extents {
+ public:
+  Extents(const HalfedgeMesh& mesh, const PerTriangle<Index>& face, Index count) : mesh_(mesh), outermost_(count) {
+    Array<Eigen::RowVector3d> directions;
+    for (int code = 14; code < 27; ++code) {  // one of each pair of opposite ones
+      directions.emplace_back(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
+    }
+    for (auto& of_face : outermost_) of_face.fill(none);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const Index v = mesh.origin(h);
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        const double at = directions[i].dot(mesh.positions.row(v));
+        for (const int sign : {1, -1}) {
+          Index& best = outermost_[face[h / 3]][2 * i + (sign < 0)];
+          if (best == none || sign * at > sign * directions[i].dot(mesh.positions.row(best))) best = v;
+        }
+      }
+    }
+  }
+
+  // Of the face of h.
+  double across(Index h, Index face) const {
+    const auto at = [&](Index v) -> Eigen::RowVector3d { return mesh_.positions.row(v); };
+    const Eigen::RowVector3d along = at(mesh_.target(h)) - at(mesh_.origin(h));
+    const Eigen::RowVector3d inward = at(mesh_.origin(prev(h))) - at(mesh_.origin(h));
+    const Eigen::RowVector3d across = (inward - along * (inward.dot(along) / along.squaredNorm())).normalized();
+    double least = 0, most = 0;
+    for (const Index v : outermost_[face]) {
+      const double here = (at(v) - at(mesh_.origin(h))).dot(across);
+      least = std::min(least, here);
+      most = std::max(most, here);
+    }
+    return most - least;
+  }
+
+ private:
+  const HalfedgeMesh& mesh_;
+  PerPart<std::array<Index, 26>> outermost_;
+};
+
 // Triangles of flat faces that are narrow for how much the surface turns at an edge of theirs.
 PerTriangle<char> find_rounded(const MetricMesh& surface, const Eigen::VectorXd& bend) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   PerTriangle<Index> face;
   const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return bend[h] >= within_face; }), face);
-  PerPart<double> area(count, 0), perimeter(count, 0);
-  for (Index f = 0; f < mesh.triangle_count(); ++f) area[face[f]] += geometry.area[f];
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const bool ends = mesh.twin[h] == none || face[mesh.twin[h] / 3] != face[h / 3];
-    if (ends) perimeter[face[h / 3]] += geometry.length[h];
-  }
+  const Extents extents(mesh, face, count);
   const double reach = largest_radius * std::sqrt(geometry.total_area);
   PerPart<char> is_narrow(count, 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] == none || bend[h] < least_bend) continue;
-    const Index f = face[h / 3];
-    // The end of a long face is not narrow, nor is a wide one of small triangles.
-    const double width = std::max(2 * geometry.area[h / 3] / geometry.length[h], 2 * area[f] / perimeter[f]);
-    if (width < reach * bend[h]) is_narrow[f] = 1;
+    // A sharp edge, such as the rim of a bore, rounds nothing.
+    if (mesh.twin[h] == none || bend[h] < least_bend || bend[h] > most_bevel_bend) continue;
+    // The end of a long face is not narrow, nor is a wide one of small triangles or slivers.
+    const double height = 2 * geometry.area[h / 3] / geometry.length[h];
+    if (height < reach * bend[h] && extents.across(h, face[h / 3]) < reach * bend[h]) is_narrow[face[h / 3]] = 1;
   }
   PerTriangle<char> out(mesh.triangle_count(), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) out[f] = is_narrow[face[f]];
   return out;
 }
 
+// Between the normals of two triangles, radians.
+double turn_between(const HalfedgeMesh& mesh, Index f, Index g) {
+  const auto normal = [&](Index of) -> Eigen::Vector3d {
+    const auto at = [&](int c) -> Eigen::Vector3d { return mesh.positions.row(mesh.triangles(of, c)).transpose(); };
+    return (at(1) - at(0)).cross(at(2) - at(0));
+  };
+  const Eigen::Vector3d one = normal(f), other = normal(g);
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
 // The face beside a bevel to which a polygon is nearest, and by how much the surface turns on the way.
 struct Side {
   Index face = none;
   std::int64_t turn = 0;
+  Index nearest = none;  // triangle of that face
 };
 
 // Faces beside bevels end at creases, where the surface bends by `angle`.
@@ -77,23 +126,24 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
   PerPart<Array<Index>> triangles(count);
   for (Index f = 0; f < mesh.triangle_count(); ++f) triangles[polygon[f]].push_back(f);
   PerTriangle<Side> out(mesh.triangle_count());
-  using Entry = std::tuple<std::int64_t, Index, std::int64_t, Index>;  // rounded turn, face, turn, triangle
+  using Entry =
+      std::tuple<std::int64_t, Index, std::int64_t, Index, Index>;  // rounded turn, face, turn, triangle, nearest
   LeastFirst<Entry> queue;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    if (!is_rounded[f]) queue.emplace(0, face[f], 0, f);
+    if (!is_rounded[f]) queue.emplace(0, face[f], 0, f, f);
   }
   while (!queue.empty()) {
     checkpoint(operations_a_side);
-    const auto [rounded, side, turn, f] = queue.top();
+    const auto [rounded, side, turn, f, nearest] = queue.top();
     queue.pop();
     if (out[f].face != none) continue;
     for (const Index g : triangles[polygon[f]]) {
-      out[g] = {side, turn};
+      out[g] = {side, turn, nearest};
       for (Index h = 3 * g; h < 3 * g + 3; ++h) {
         const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
         if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bevel_bend) continue;
         const std::int64_t further = turn + std::llround(bend[h] / unit_of_turns);
-        queue.emplace(further / alike, side, further, there);
+        queue.emplace(further / alike, side, further, there, nearest);
       }
     }
   }
@@ -124,7 +174,9 @@ std::optional<Bevels> find_bevels(const MetricMesh& surface, const Eigen::Vector
   out.crease = marked(mesh, [&](Index h) {
     const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];
     const double turn = bend[h] + unit_of_turns * static_cast<double>(here.turn + there.turn);
-    return out.edge[h] && here.face != there.face && turn >= angle;
+    if (!out.edge[h] || turn < angle) return false;
+    // A face may run on around the end of a bevel, or of the crease of two bores that meet.
+    return here.face != there.face || turn_between(mesh, here.nearest, there.nearest) >= angle;
   });
   return out;
 }

@@ -99,7 +99,8 @@ struct SharedBorder {
 
 class Patches {
  public:
-  Patches(const MetricMesh& surface, PerTriangle<Index> patch, Bevels bevels)
+  // darts: edges inside patches at which these are open as well, or empty.
+  Patches(const MetricMesh& surface, PerTriangle<Index> patch, Bevels bevels, const PerHalfedge<char>& darts = {})
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
         patch_(std::move(patch)),
@@ -110,7 +111,7 @@ class Patches {
     degree_.assign(mesh.vertex_count(), 0);
     perimeter_.assign(mesh.triangle_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      is_border_[h] = mesh.twin[h] == none || patch_[h / 3] != patch_[mesh.twin[h] / 3];
+      is_border_[h] = mesh.twin[h] == none || patch_[h / 3] != patch_[mesh.twin[h] / 3] || (!darts.empty() && darts[h]);
       if (!is_border_[h]) continue;
       perimeter_[patch_[h / 3]] += geometry.length[h];
       if (mesh.twin[h] < h) ++degree_[mesh.origin(h)], ++degree_[mesh.target(h)];
@@ -469,6 +470,18 @@ PerHalfedge<char> with_frames_divided(const MetricMesh& surface, PerHalfedge<cha
   return out;
 }
 
+// Creases that end inside a patch, whose both sides they are on: where two bores touch, the edge between them fades
+// out.
+PerHalfedge<char> find_darts(const HalfedgeMesh& mesh, const PerHalfedge<char>& crease) {
+  PerTriangle<Index> part;
+  label_parts(mesh, crease, part);
+  PerHalfedge<char> out(mesh.halfedge_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    out[h] = crease[h] && mesh.twin[h] != none && part[h / 3] == part[mesh.twin[h] / 3];
+  }
+  return out;
+}
+
 // The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
 // beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
@@ -480,8 +493,12 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
       const bool is_marked = crease[h] && bend[h] < options.angle;
       bevels->crease[h] = bevels->edge[h] && !is_marked ? bevels->crease[h] && may_cut(mesh, h) : crease[h];
     }
-    out.emplace(surface, find_patches(surface, bevels->crease, bend, least_patch), std::move(*bevels));
-    if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
+    const PerTriangle<Index> patch = find_patches(surface, bevels->crease, bend, least_patch);
+    for (const PerHalfedge<char>& darts : {PerHalfedge<char>(), find_darts(mesh, bevels->crease)}) {
+      out.emplace(surface, patch, *bevels, darts);
+      if (!meet_others(mesh, bevels->crease, bend, options.angle)) break;
+      if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
+    }
   }
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0);
