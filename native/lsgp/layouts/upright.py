@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base import arguments
 from ..base.arguments import FloatArray, IndexArray
-from ..base.edge_keys import edge_keys
 from ..errors import InputError
 from ..indexed_uv import index_corners
 from ..lattice import island_boxes
@@ -95,15 +94,25 @@ def _turned_square(uv: FloatArray, quarters: int) -> FloatArray:
 
 
 def _outlines(uv: FloatArray, island: IndexArray, count: int) -> list[FloatArray]:
-    """Of each island the sides of triangles, (s, 2, 2), that no other triangle of it has."""
+    """Of each island the sides of triangles, (s, 2, 2), counter-clockwise around them, beyond which it has no other; as
+    many times as there are triangles on one side more than on the other."""
     numbers = np.repeat(island, 3)
+    first, second = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+    is_flipped = first[:, 0] * second[:, 1] < first[:, 1] * second[:, 0]
+    corners = np.where(is_flipped[:, None, None], uv[:, [0, 2, 1]], uv)
     _, place = index_corners(
-        np.maximum(numbers, 0), np.where(np.repeat(island >= 0, 3)[:, None], uv.reshape(-1, 2), 0.0)
+        np.maximum(numbers, 0), np.where(np.repeat(island >= 0, 3)[:, None], corners.reshape(-1, 2), 0.0)
     )
-    tail, head = place, np.roll(place.reshape(-1, 3), -1, axis=1).ravel()
-    _, index, times = np.unique(edge_keys(tail, head, len(place)), return_inverse=True, return_counts=True)
-    sides = np.stack([uv, np.roll(uv, -1, axis=1)], axis=2).reshape(-1, 2, 2)
-    kept = (times[index.ravel()] == 1) & (numbers >= 0)
+    tail, head = place.astype(np.int64), np.roll(place.reshape(-1, 3), -1, axis=1).ravel().astype(np.int64)
+    key, opposite = tail * len(place) + head, head * len(place) + tail
+    known, index, times = np.unique(key, return_inverse=True, return_counts=True)
+    at = np.minimum(np.searchsorted(known, opposite), len(known) - 1)
+    beyond = np.where(known[at] == opposite, times[at], 0)
+    order = np.argsort(key, kind="stable")
+    rank = np.empty(len(key), np.int64)
+    rank[order] = np.arange(len(key)) - (np.cumsum(times) - times)[index.ravel()[order]]
+    sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    kept = (rank >= beyond) & (numbers >= 0)
     return [sides[kept & (numbers == i)] for i in range(count)]
 
 
@@ -176,9 +185,9 @@ def _to_segment(point: FloatArray, begin: FloatArray, end: FloatArray) -> FloatA
 
 
 def _holds(outline: FloatArray, point: NDArray[np.float64]) -> bool:
-    """Whether a point is inside an outline, but for its holes."""
+    """Whether an outline winds around a point."""
     a, b = outline[:, 0], outline[:, 1]
-    across = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
-    rise = np.where(across, b[:, 1] - a[:, 1], 1.0)
+    upward = (b[:, 1] > point[1]).astype(np.int64) - (a[:, 1] > point[1])
+    rise = np.where(upward != 0, b[:, 1] - a[:, 1], 1.0)
     right = a[:, 0] + (point[1] - a[:, 1]) / rise * (b[:, 0] - a[:, 0]) > point[0]
-    return bool((across & right).sum() % 2)
+    return bool(upward[right].sum())

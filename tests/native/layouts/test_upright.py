@@ -44,6 +44,22 @@ def test_what_would_come_too_near_stays():
     assert np.array_equal(lsgp.stand_upright(corner, [0, 1], [math.pi, 0.0], margin=MARGIN, whole=False), corner)
 
 
+@pytest.mark.parametrize("layers", ["a face twice", "turned over", "folded", "mirrored"])
+def test_what_lies_on_itself_is_in_the_way_as_well(layers):
+    """Its sides are those of several triangles on one side of them."""
+    corner = np.array([[0.49, 0.7], [0.51, 0.7], [0.5, 0.72]])
+    second = {"a face twice": corner, "turned over": corner[::-1], "folded": [corner[1], corner[0], [0.5, 0.74]]}
+    small = np.array([corner, second[layers]]) if layers in second else corner[None, ::-1]
+    uv = np.concatenate([rectangle(0.2, 0.3, 0.8, 0.5), small])
+    island = np.array([0, 0, *np.ones(len(small), int)])
+    kept = lsgp.stand_upright(uv, island, [math.pi / 2, 0.0], margin=MARGIN, whole=False)
+    assert np.array_equal(kept, uv)
+    # Where nothing is in the way it turns.
+    uv[2:, :, 0] += 0.2
+    turned = lsgp.stand_upright(uv, island, [math.pi / 2, 0.0], margin=MARGIN, whole=False)
+    assert np.ptp(turned[:2, :, 1]) == pytest.approx(0.6) and np.array_equal(turned[2:], uv[2:])
+
+
 def test_most_of_the_area_decides_how_the_whole_is_turned():
     uv = np.concatenate([rectangle(0.01, 0.01, 0.99, 0.6), rectangle(0.01, 0.62, 0.3, 0.99)])
     island = np.array([0, 0, 1, 1])
