@@ -73,6 +73,27 @@ RARE_PLACEMENT: Values = {
     "count": [-1, 100, 2**31 - 1],
 }
 
+AUTO: Values = {
+    "preset": ["paint", "bake", "tile"],
+    "count": [None, 0, 1, 5],
+    "target": [1.05, 1.01, 1.5],
+    "symmetric": [True, False],
+    "creases": [True, False],
+    "pack": [None, "tight", "shelves"],
+    "effort": [None, "quick"],
+    "udim": [None, 1, 2, 7],
+    "stack": [None, "same", "mirrored"],
+    "up": ["none", "random"],
+    "weights": ["usual", "random", "extreme"],
+    "seconds": [None, 1e9],
+}
+RARE_AUTO: Values = {
+    "count": [-1, 100],
+    "target": [1.0, float("nan"), 1.0001, 1e9],
+    "udim": [0, 100, 101],
+    "seconds": [0.0, 1e-9, float("nan")],
+}
+
 
 def _names(options: type) -> set[str]:
     return {field.name for field in dataclasses.fields(options)}

@@ -11,7 +11,16 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from .choices import Choices
-from .option_values import OPTIONS, PLACEMENT, RARE_OPTIONS, RARE_PLACEMENT, RARE_SEAMLESS, SEAMLESS
+from .option_values import (
+    AUTO,
+    OPTIONS,
+    PLACEMENT,
+    RARE_AUTO,
+    RARE_OPTIONS,
+    RARE_PLACEMENT,
+    RARE_SEAMLESS,
+    SEAMLESS,
+)
 
 Step = dict[str, Any]
 
@@ -72,6 +81,19 @@ def _placing(choices: Choices, meshes: Sequence[str]) -> Step:
     return {"options": _values(choices, PLACEMENT, RARE_PLACEMENT, 3), "adopt": choices.pick([True, False])}
 
 
+def _auto(choices: Choices, meshes: Sequence[str]) -> Step:
+    return {"options": _values(choices, AUTO, RARE_AUTO, 5), **_seed(choices)}
+
+
+def _shaping(choices: Choices, meshes: Sequence[str]) -> Step:
+    return {
+        "shape": choices.pick(["grid", "even-grid", "strip", "rectangle"]),
+        "share": choices.pick([1.0, 0.5, 0.1]),
+        "pins": choices.pick([0, 0, 1, 4]),
+        **_seed(choices),
+    }
+
+
 def _cancelling(choices: Choices, meshes: Sequence[str]) -> Step:
     return {
         "verb": choices.pick(["parameterize", "solve", "place", "gains", "prescribe", "cuts"]),
@@ -127,6 +149,8 @@ RULES: dict[str, tuple[int, Callable[[Choices, Sequence[str]], Step]]] = {
     "prescribe": (2, _plain),
     "find cuts": (2, _plain),
     "measure": (2, _of_kind("measured")),
+    "auto unwrap": (3, _auto),
+    "shape a patch": (2, _shaping),
     "command": (2, _command),
     "enter again": (1, _plain),
     "two threads": (1, _plain),

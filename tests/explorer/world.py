@@ -25,7 +25,9 @@ from outcome_check import (
     prescription_faults,
     result_faults,
     same_measures,
+    warning_faults,
 )
+from result_check import undeclared_faults
 
 from . import places
 from .command import command_faults
@@ -316,6 +318,44 @@ class World:
         if step["adopt"]:
             self._adopt(placed)
         return f"{ended.told}, {unwrapped.told}", faults
+
+    def _auto_unwrap(self, step: Step) -> tuple[str, list[str]]:
+        how, rng = dict(step["options"]), np.random.default_rng(step["seed"])
+        if how.pop("up", "none") == "random":
+            how["up"] = rng.normal(size=3).tolist()
+        weights = how.pop("weights", "usual")
+        if weights != "usual":
+            values = [0.0, 0.1, 1.0] if weights == "random" else [0.0, 50.0, 1e6]
+            how["weights"] = lsgp.Weights(*map(float, rng.choice(values, len(fields(lsgp.Weights)))))
+        ended = outcome(lambda: lsgp.auto_unwrap(self.surface, **how))
+        if ended.error is not None:
+            return ended.told, error_faults(self.surface, ended.error)
+        self.result = ended.value
+        faults = warning_faults(self.surface, self.result.warnings)
+        # Islands are moved, some of them apart from others with which they are joined by transitions.
+        opened, plain = replace(self.surface, borders=self.result.borders), lsgp.Options(method="lscm")
+        found = undeclared_faults(opened, self.result, plain)
+        return ended.told, faults + [fault for fault in found if "overlap" not in fault or not how.get("stack")]
+
+    def _shape_a_patch(self, step: Step) -> tuple[str, list[str]]:
+        """What has coordinates keeps some, and what is pinned its own."""
+        total = len(self._triangles)
+        if self.result is None or len(self.result.corner_uv) != total:
+            return "nothing to shape", []
+        rng, uv = np.random.default_rng(step["seed"]), self.result.corner_uv
+        some = np.flatnonzero(self.result.island == rng.integers(max(self.result.island.max(initial=0) + 1, 1)))
+        some = some[: max(1, round(step["share"] * len(some)))]
+        pinned = rng.permutation(3 * total)[: step["pins"]]
+        ended = outcome(lambda: lsgp.shape_patches(self.surface, uv, some, step["shape"], pinned=pinned))
+        if ended.error is not None:
+            return ended.told, error_faults(self.surface, ended.error)
+        shaped = ended.value.corner_uv
+        faults = []
+        if not np.array_equal(np.isfinite(shaped).all(axis=(1, 2)), np.isfinite(uv).all(axis=(1, 2))):
+            faults.append("other triangles have coordinates than before")
+        if not np.allclose(shaped.reshape(-1, 2)[pinned], uv.reshape(-1, 2)[pinned], rtol=0, atol=1e-9, equal_nan=True):
+            faults.append("a pinned corner has moved")
+        return ended.told, faults
 
     def _cone_gains(self, step: Step) -> tuple[str, list[str]]:
         ended = outcome(self._verb("gains"))
