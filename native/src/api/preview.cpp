@@ -13,6 +13,7 @@
 #include "lsgp/lsgp.hpp"
 #include "mesh/refined_surface.hpp"
 #include "mesh/thinned_surface.hpp"
+#include "mesh/vertex_costs.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 
@@ -35,19 +36,6 @@ PerHalfedge<char> fixed_edges(const Surface& surface, const EdgeTable& edges, co
     out[h] = edge != none && is_fixed[edge];
   }
   return out;
-}
-
-// The mean cost of the edges at each vertex, where there are costs.
-Eigen::VectorXd costs_at_vertices(const Surface& surface) {
-  if (surface.cut_costs.size() == 0) return {};
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(surface.positions.rows()), count = sum;
-  for (Eigen::Index row = 0; row < surface.edges->rows(); ++row) {
-    for (int end = 0; end < 2; ++end) {
-      sum[(*surface.edges)(row, end)] += surface.cut_costs[row];
-      ++count[(*surface.edges)(row, end)];
-    }
-  }
-  return (sum.array() / count.array().max(1)).matrix();
 }
 
 // The smaller surface with the cones among its vertices, as one of its own.
@@ -174,15 +162,9 @@ Surface Preview::Kept::smaller(const ConedSurface& coned) const {
     }
   }
   if (cost.size() > 0) {
-    const EdgeTable edges(out, PerTriangle<char>(out.triangles.rows(), 0));
-    out.edges.emplace(edges.count(), 2);
-    out.cut_costs.resize(edges.count());
-    for (Index edge = 0; edge < edges.count(); ++edge) {
-      const Index h = edges.halfedge(edge, 0);
-      const Index a = out.triangles.data()[h], b = out.triangles.data()[next(h)];
-      out.edges->row(edge) << a, b;
-      out.cut_costs[edge] = (cost[coned.vertex_of(a)] + cost[coned.vertex_of(b)]) / 2;
-    }
+    Eigen::VectorXd own(coned.node_count());
+    for (Index i = 0; i < coned.node_count(); ++i) own[i] = cost[coned.vertex_of(i)];
+    take_costs(own, out);
   }
   return out;
 }

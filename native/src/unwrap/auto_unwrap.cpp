@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/validation.hpp"
-#include "unwrap/border_choice.hpp"
+#include "unwrap/coarse_first.hpp"
 #include "unwrap/division_choice.hpp"
 #include "unwrap/feature_choice.hpp"
 #include "unwrap/features_wanted.hpp"
@@ -117,35 +117,42 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     return is_measured ? share_of(whole_time, measuring, 1) : whole_time;
   };
   const Progress choosing = after_measuring(progress);
-  CreaseBorders creases;
+  EndsInMap ends;
   if (options.creases) {
-    creases =
+    ends.creases =
         crease_borders_for(surface, given, {preset.most_corners, options.sharp}, of_map, share_of(choosing, 0, 0));
   }
   const bool is_pinned = !pins.corners.empty();
-  if (is_pinned) creases.possible.resize(0, 2);
+  if (is_pinned) ends.creases.possible.resize(0, 2);
   const bool is_packed = options.pack && !is_pinned && !of_map.of_map.seamless;
   constexpr double mapping = 0.9;  // of the time, where islands are packed afterward
   const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
-
-  Tubes tubes;
-  if (options.creases && weights.strips > 0) tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
+  if (options.creases && weights.strips > 0) {
+    ends.tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
+  }
   Objective objective(weights, {of_map.of_map.square_share});
   const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
-  const auto mapped = [&](const MapOptions& chosen, const Progress& share) {
-    const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, TubesBecome what, const Progress& of_one) {
-      MapOptions with = chosen;
-      if (what == TubesBecome::strips) with.of_map.border = BorderMode::strips;
-      return best_map(bordered, {given, symmetry, pins}, with, objective, of_one);
+  const ChooseMap choose = [&](const Surface& on, const EndsInMap& its_ends, Objective& by, const Progress& share) {
+    const auto mapped = [&](const MapOptions& chosen, const Progress& of_maps_alone) {
+      const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, TubesBecome what,
+                            const Progress& of_one) {
+        MapOptions with = chosen;
+        if (what == TubesBecome::strips) with.of_map.border = BorderMode::strips;
+        return best_map(bordered, {given, symmetry, pins}, with, by, of_one);
+      };
+      return best_of_tubes(on, {its_ends.creases, its_ends.tubes}, make, by, of_maps_alone);
     };
-    return best_of_tubes(surface, {creases, tubes}, make, objective, share);
+    const Made usual = best_for_strokes(on, of_map, mapped, share);
+    if (is_pinned) return usual;
+    // What is cut apart on few triangles has no counterpart on all of them.
+    const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && &on == &surface;
+    const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
+    return best_division(whole, of_map, by, share);
   };
   const Made best = best_in_time(limit, objective, of_map, [&] {
-    const Made usual = best_for_strokes(surface, of_map, mapped, of_maps);
-    if (is_pinned) return usual;
-    const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact;
-    const Made whole = may_end ? with_unfolded_parts(usual, of_map, objective, share_of(of_maps, 1, 1)) : usual;
-    return best_division(whole, of_map, objective, of_maps);
+    const bool may_be_simplified = is_kept_when_simplified(surface, given, ends, of_map) && !is_pinned;
+    return may_be_simplified ? best_coarse_first(surface, ends, options.target, choose, objective, of_maps)
+                             : choose(surface, ends, objective, of_maps);
   });
 
   Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),

@@ -54,7 +54,7 @@ Made best_division(const Made& usual, const MapOptions& options, Objective& obje
   };
   const auto measure = [&](const Made& made, const Progress& packing) { return objective.quality(*made, packing); };
   MapOptions further = options;
-  further.of_map.border = usual->border;
+  further.of_map.border = usual->options.of_map.border;
   MapOptions fewer = further;
   further.of_map.square_share = squares_of_more;
   fewer.of_map.compact = compact == Compactness::sparing ? Compactness::off : Compactness::sparing;

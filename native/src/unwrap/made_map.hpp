@@ -44,8 +44,8 @@ struct MadeMap {
   std::shared_ptr<BorderedSurface> surface;
   CompletedCones cones;
   Result result;
-  BorderMode border = BorderMode::free;  // that it was made with
-  std::optional<Quality> quality;        // once it is measured, without its asymmetry
+  MapOptions options;              // that it was made with
+  std::optional<Quality> quality;  // once it is measured, without its asymmetry
 };
 
 // Shared by choices that follow each other; only `quality` and the findings of the result change.

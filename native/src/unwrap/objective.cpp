@@ -105,4 +105,11 @@ void Objective::note(const std::string& name, const Quality& quality, double est
   choices_.push_back({name, estimate, cost(quality, weights_), quality, in_words(quality), is_best});
 }
 
+void Objective::note_all(const std::string& surface, const std::vector<Choice>& others) {
+  for (const Choice& choice : others) {
+    choices_.push_back(choice);
+    choices_.back().name = surface + ": " + choice.name;
+  }
+}
+
 }  // namespace lsgp

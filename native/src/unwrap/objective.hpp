@@ -37,6 +37,7 @@ class Objective {
   Objective(const Weights& weights, SquareShare share) : weights_(weights), share_(share) {}
 
   const Weights& weights() const { return weights_; }
+  SquareShare share() const { return share_; }
   const std::vector<Choice>& choices() const { return choices_; }
 
   // Of a map.  progress: of packing.  Throws CANCELLED.
@@ -58,6 +59,9 @@ class Objective {
 
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
+
+  // Adds the trace of another choice, on a surface that is named.
+  void note_all(const std::string& surface, const std::vector<Choice>& others);
 
   // During its lifetime nothing but the first candidate of a choice is made that is expected to cost more than another
   // map does.

@@ -117,7 +117,7 @@ Made with_unfolded_parts(const Made& made, const MapOptions& options, Objective&
     const auto surface =
         std::make_shared<BorderedSurface>(std::move(opened), made->surface->in_tubes, made->surface.get());
     MapOptions others = options;
-    others.of_map.border = made->border;
+    others.of_map.border = made->options.of_map.border;
     return maps_of(surface, no_pins)(beside(made->cones, parts, is_left_out), others, progress);
   });
   if (!unfolded) return made;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps of large surfaces, chosen on few of their triangles and then made on all of them.
+#pragma once
+
+#include <functional>
+
+#include "unwrap/border_choice.hpp"
+#include "unwrap/made_map.hpp"
+#include "unwrap/objective.hpp"
+#include "unwrap/tube_choice.hpp"
+
+namespace lsgp {
+
+// Where a surface may end in a map.
+struct EndsInMap {
+  CreaseBorders creases;
+  Tubes tubes;
+};
+
+// The best map of a surface by an objective.  Throws what `parameterize` and `complete_cones` throw.
+using ChooseMap = std::function<Made(const Surface&, const EndsInMap&, Objective&, const Progress&)>;
+
+// Whether a surface is so large that its map is chosen on few of its triangles, and has nothing that these lose: given
+// cones, tubes, strokes, factors of lengths, charts without cones, or creases along a lattice.
+bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, const EndsInMap& ends,
+                             const MapOptions& options);
+
+// The map with the cones, borders and divisions that are best on few triangles. Where it leaves out triangles, has
+// further defects, or misses the target although the simplified one reaches it, the map is chosen on the whole surface
+// as well, and the better one is taken.
+// target: of cones, an L2 stretch.  Throws what `choose` throws.
+Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double target, const ChooseMap& choose,
+                       Objective& objective, const Progress& progress);
+
+}  // namespace lsgp

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Large surfaces, whose maps are chosen on few of their triangles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import large_meshes
+import lsgp
+import numpy as np
+import pytest
+from lsgp.presets.auto_unwrap import TARGET
+from map_checks import digest, surface
+from result_check import undeclared_faults
+
+
+def chosen_on_few(result: lsgp.Result) -> bool:
+    return any(choice.name.startswith("on ") for choice in result.choices)
+
+
+@pytest.fixture(scope="module")
+def large() -> lsgp.Surface:
+    return surface(large_meshes.bumpy(34000))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_maps_chosen_on_few_triangles_keep_what_presets_promise(large: lsgp.Surface, preset: str) -> None:
+    result = lsgp.auto_unwrap(large, preset=preset)
+    assert chosen_on_few(result)
+    assert result.solved.all() and not len(result.overlapping) and not len(result.flipped)
+    assert undeclared_faults(replace(large, borders=result.borders), result, lsgp.preset_options(preset)) == []
+    assert result.distortion.l2_stretch <= TARGET
+
+
+@pytest.mark.slow
+def test_noise_of_the_size_of_triangles_is_no_reason_for_cones(large: lsgp.Surface) -> None:
+    first, second = large.positions[large.triangles[:, 0]], large.positions[large.triangles[:, 1]]
+    edge = float(np.linalg.norm(first - second, axis=1).mean())
+    noise = 0.1 * edge * np.random.RandomState(0).normal(size=large.positions.shape)
+    noisy = lsgp.auto_unwrap(replace(large, positions=large.positions + noise))
+    assert chosen_on_few(noisy)
+    assert len(noisy.cones) <= len(lsgp.auto_unwrap(large).cones) + 2
+
+
+@pytest.mark.slow
+def test_they_are_the_same_for_any_number_of_threads(large: lsgp.Surface) -> None:
+    one, two = (
+        lsgp.auto_unwrap(large, options=replace(lsgp.preset_options("paint"), threads=threads)) for threads in (1, 2)
+    )
+    assert digest(one) == digest(two)
+
+
+@pytest.mark.slow
+def test_what_cuts_cost_counts_there_as_well(large: lsgp.Surface) -> None:
+    ends = np.concatenate([large.triangles[:, [0, 1]], large.triangles[:, [1, 2]], large.triangles[:, [2, 0]]])
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    in_front = large.positions[edges].mean(axis=1)[:, 1] < 0
+    priced = replace(large, edges=edges, cut_costs=np.where(in_front, 30.0, 0.1))
+
+    def length_in_front(result: lsgp.Result) -> float:
+        ends = large.positions[result.cut_edges]
+        length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        return float(length[ends.mean(axis=1)[:, 1] < 0].sum())
+
+    hidden = lsgp.auto_unwrap(priced)
+    assert chosen_on_few(hidden)
+    assert length_in_front(hidden) < length_in_front(lsgp.auto_unwrap(large)) / 2
+
+
+def test_surfaces_that_cannot_be_simplified_are_chosen_for_as_they_are() -> None:
+    assert not chosen_on_few(lsgp.auto_unwrap(surface(large_meshes.strip(40000))))
+
+
+def test_small_surfaces_are_chosen_for_as_they_are() -> None:
+    assert not chosen_on_few(lsgp.auto_unwrap(surface(large_meshes.bumpy(3000))))
