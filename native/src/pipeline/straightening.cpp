@@ -78,7 +78,8 @@ class SideSearch {
   }
 
   std::optional<ComponentMap> search() {
-    constexpr int for_marked = 40, for_others = 10;
+    constexpr int for_marked = 40, for_others = 10, at_least = 2;
+    constexpr int work = 300000;  // triangles of the maps that are tried for sides that are not marked
     if (order_.marked > 0) {
       const double least_l2 = most_l2_;
       most_l2_ = std::max(least_l2, most_growth_for_marked * map_.natural_l2);
@@ -88,7 +89,7 @@ class SideSearch {
       most_l2_ = least_l2;
       if (best_) most_l2_ = std::max(least_l2, largest_l2_straight(l2_of(task_.surface, *best_)));
     }
-    left_ = for_others;
+    left_ = std::clamp(work / task_.surface.mesh.triangle_count(), at_least, for_others);
     const std::ptrdiff_t all = ssize(sides_);
     if (order_.marked < all && tries(order_.marked, all)) {
       const bool has_border = add(order_.marked, order_.border, order_.border == all);

@@ -15,7 +15,11 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr int newton_steps = 30;
 constexpr double newton_decrease = 1e-5;  // of the energy in a step
-constexpr double least_weight = 1e-3;     // of the mean, so that no vertex is without any
+// On large surfaces, whose steps take long: on 70,000 triangles four of seven steps lower the energy by less, and what
+// it has above that of an isometry by a hundredth in all.
+constexpr Index least_large = 30000;  // triangles
+constexpr double decrease_on_large = 2e-4;
+constexpr double least_weight = 1e-3;  // of the mean, so that no vertex is without any
 
 }  // namespace
 
@@ -33,7 +37,10 @@ Eigen::VectorXd importance_of_triangles(const MetricMesh& surface, const Eigen::
   return (out / mean).cwiseMax(least_weight);
 }
 
-void relax_stretch(NewtonMinimizer& newton) { newton.smooth(Kind::symmetric_dirichlet, newton_steps, newton_decrease); }
+void relax_stretch(NewtonMinimizer& newton) {
+  const double decrease = newton.triangle_count() < least_large ? newton_decrease : decrease_on_large;
+  newton.smooth(Kind::symmetric_dirichlet, newton_steps, decrease);
+}
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {

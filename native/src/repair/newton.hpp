@@ -59,6 +59,8 @@ class NewtonMinimizer {
   NewtonMinimizer(const CutSurface& surface, const RestShapes& rest, DegreesOfFreedom freedom, StepHook before_step,
                   Eigen::VectorXcd& position);
 
+  Index triangle_count() const { return static_cast<Index>(shapes_.size()); }
+
   // Multiplies the weights of triangles, (m).
   void weigh(const Eigen::VectorXd& factors);
 
