@@ -11,9 +11,12 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+import zoo
+from explorer import places
 from lsgp.io.mesh_obj import read_obj
 from map_checks import codes, surface
 from meshes import Mesh
+from opened_surface import named_by
 from result_check import undeclared_faults
 
 
@@ -260,3 +263,20 @@ def test_a_texel_layout_is_refused_before_the_map(monkeypatch: pytest.MonkeyPatc
         lsgp.TexelLayout(10.0, 1024, udim=1000)
     with pytest.raises(lsgp.InputError, match="has the size of its tiles"):
         lsgp.auto_unwrap(surface(meshes.cube(2)), preset="tile", texels=lsgp.TexelLayout(10.0, 1024))
+
+
+def test_a_component_that_is_mapped_in_part_is_left_out_in_part_only() -> None:
+    """Cones cannot be placed on it, as few edges may be cut; along its seams one part of it unfolds nevertheless."""
+    member = zoo.member("mixed-parts-count=2-spread=0-seed=0")
+    mesh = member.mesh()
+    total = len(mesh.positions)
+    found = lsgp.auto_unwrap(
+        lsgp.Surface(
+            mesh.positions,
+            mesh.triangles,
+            places.edges_of_kind("few", 6002, mesh.triangles, total),
+            places.seams_of_kind("around a part", 5270, 6, mesh.triangles, total),
+        ),
+        preset="tile",
+    )
+    assert np.array_equal(np.unique(named_by(found, "COMPONENT_SKIPPED")), np.flatnonzero(~found.solved))

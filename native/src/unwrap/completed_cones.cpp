@@ -134,11 +134,12 @@ std::optional<Placement> try_to_place_on(const std::vector<LedgerPart>& componen
   return {};
 }
 
-// A finding of placement, which leaves components out that have a map without cones.
+// A finding of placement, which leaves components out that have a map without cones. The map names what it lacks of
+// these itself.
 Finding true_of_map(Finding finding, const Result& result) {
   const auto is_left_out = [&](Index f) { return element(result.island, f) < 0; };
   const std::vector<Index>& triangles = finding.elements.indices;
-  if (finding.code != Code::component_skipped || std::any_of(triangles.begin(), triangles.end(), is_left_out)) {
+  if (finding.code != Code::component_skipped || std::all_of(triangles.begin(), triangles.end(), is_left_out)) {
     return finding;
   }
   const std::size_t reason = finding.message.find(": ");
