@@ -18,7 +18,7 @@ class QuadPatch {
         quads_(find_quads(surface)),
         side_of_(surface.mesh.halfedge_count(), none) {
     for (Index q = 0; q < ssize(quads_); ++q) {
-      for (int s = 0; s < 4; ++s) side_of_[quads_[q].side[s]] = 4 * q + s;
+      for (int s = 0; s < 4; ++s) side_of_[element(quads_[q].side, s)] = 4 * q + s;
     }
   }
 
@@ -88,9 +88,9 @@ std::optional<std::array<double, 2>> QuadPatch::girths(const Array<Index>& from,
       const Index q = at / 4;
       const int s = at % 4;
       ++passed;
-      rims[0] += geometry_.length[quads_[q].side[(s + 1) % 4]];
-      rims[1] += geometry_.length[quads_[q].side[(s + 3) % 4]];
-      last = quads_[q].side[(s + 2) % 4];
+      rims[0] += geometry_.length[element(quads_[q].side, (s + 1) % 4)];
+      rims[1] += geometry_.length[element(quads_[q].side, (s + 3) % 4)];
+      last = element(quads_[q].side, (s + 2) % 4);
       at = mesh_.twin[last] == none ? none : side_of_[mesh_.twin[last]];
     }
     if (last != to[to.size() - 1 - i]) return std::nullopt;

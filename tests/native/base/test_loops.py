@@ -36,12 +36,25 @@ REVIEWED = {
     "assembly/cut_paths.cpp": [
         ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
     ],
+    "creases/opened_tube.cpp": [
+        ("while (!ends(first))", SIDES, SHORT),
+        ("for (Index h = first;;)", SIDES, SHORT),
+        ("while (at != none && passed < ssize(quads_))", "passes a quad each time, as many as there are", SHORT),
+    ],
     "kept/kept_components.cpp": [
         (
             "for (const KeptComponents* kept = earlier_.get(); kept != nullptr; kept = kept->earlier_.get())",
             LINKED,
             SHORT,
         ),
+    ],
+    "unwrap/unfolded_parts.cpp": [
+        (
+            "for (std::size_t first = 0, next = 0; first < sides.size(); first = next)",
+            "passes a side each time",
+            SHORT,
+        ),
+        ("while (next < sides.size() && is_same(sides[next]))", "passes a side each time", SHORT),
     ],
     "unwrap/objective.cpp": [
         (
