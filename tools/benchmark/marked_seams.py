@@ -313,8 +313,8 @@ def page(rows: list[Row]) -> str:
 Written by `python tools/benchmark/marked_seams.py --write`. What is cut besides the seams that are marked, with
 *Auto Unwrap*, *Paint*, and *Seams ▸ Mine Only* or *Mine and Automatic*, the default
 ([what they mean](../how-to/cuts.md#marked-seams)). On some models seams are marked by formula, on the others the
-islands of xatlas, uvunwrap, *Paint*, *Bake* or Blender's *Smart UV Project* are turned into seams. Blender's own *Unwrap*
-with *Minimum Stretch* goes by the same seams. L2 stretch is measured with each island at a scale of its own.
+islands of xatlas, uvunwrap, *Paint*, *Bake* or Blender's *Smart UV Project* are turned into seams. Blender's own
+*Unwrap* with *Minimum Stretch* goes by the same seams. L2 stretch is measured with each island at a scale of its own.
 
 *Beyond* counts edges that are cut and not marked, with *Mine Only* also those marked and not cut. An asterisk marks
 models whose seams do not suffice: a chart is stretched by more than 5 % without cones, is no disk and stretched, or
