@@ -23,7 +23,6 @@ constexpr double acceptable_growth = 1.1;     // of the energy by an automatic g
 constexpr double acceptable_turn = 0.02;      // radians, of directions by an automatic grid
 constexpr double near_finest = 1.02;          // of the growth that the finest grid has where that is more
 constexpr double small_share = 0.05;          // of the area, of components whose tiles may be smaller than elsewhere
-constexpr double even_tiles = 64;             // to which a grid may be refined so that none are smaller than elsewhere
 constexpr double most_uneven = 1.25;          // scale of a component, over that of others
 constexpr double most_refinement = 2;         // of a grid, for a common layout
 
@@ -123,9 +122,6 @@ Grid GridSearch::find_coarsest() {
     }
   }
   double tiles = std::min(exceeded_on(small_share, sizes), most_tiles);
-  for (const double size : sizes) {
-    if (size <= even_tiles) tiles = std::max(tiles, size);
-  }
   while (tiles < most_tiles && energy_of_scales(scales, usual * tiles / extent()) > acceptable_growth) {
     tiles = next_size(tiles);
   }

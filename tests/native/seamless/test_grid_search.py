@@ -133,6 +133,17 @@ def test_small_parts_have_grids_of_their_own(scale: float) -> None:
     assert result.seamless.tiles <= 64
 
 
+@pytest.mark.parametrize("scale", [0.1, 0.06, 0.03])
+@pytest.mark.parametrize("body", [meshes.bumpy_sphere(2), meshes.cube(2)], ids=["ball", "cube"])
+def test_small_parts_do_not_choose_the_tiles_of_all(body: Mesh, scale: float) -> None:
+    """They have less than a twentieth of the area; tiles are finer than without them where the layout gains by it."""
+    mesh = meshes.merge([body, meshes.transform(meshes.bumpy_sphere(1), 1, scale)])
+    alone, both = (lsgp.parameterize(surface(of), of.cones, None, SQUARE).seamless for of in (body, mesh))
+    assert alone is not None and both is not None
+    assert both.tile_size >= alone.tile_size / 4
+    assert both.energy_after <= ACCEPTABLE * both.energy_before
+
+
 @pytest.mark.parametrize("distance", [1e-2, 1e-5, 1.5e-8])
 def test_a_grid_beyond_the_bound_says_so(distance: float) -> None:
     """Cones of opposite curvature, of whose distance even the finest grid makes a cell."""
