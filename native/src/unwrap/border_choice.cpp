@@ -117,11 +117,11 @@ Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, c
   const auto make_ending = [&](const VertexPairs& edges, const Progress& share) {
     return ended && edges.rows() == possible.rows() ? ended : make(surfaces.ending_at(edges), share);
   };
+  const Objective::Bound bound(objective, objective.quality(*best, share_of(rest, 0, 0)));
   if (best->result.seamless) {
     AlongLattice gain(surface->parts, borders);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   } else {
-    const Objective::Bound bound(objective, objective.quality(*best, share_of(rest, 0, 0)));
     LowerCost gain(surface->parts, borders, objective);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   }

@@ -88,11 +88,11 @@ Candidate SymmetryChoice::candidate(Kind kind, double asymmetry) {
 std::optional<double> SymmetryChoice::expected(Kind kind) const {
   switch (kind) {
     case Kind::symmetric: return 0;
-    case Kind::free_cuts: return expected_of_others(half_symmetric);
+    case Kind::free_cuts: return expected_of_others(kind, half_symmetric);
     case Kind::usual:
       // Without cones these are the symmetric ones.
       if (alike_ && alike_->cones.vertices.empty() && made(Kind::free_cuts) != nullptr) return {};
-      return made_.empty() ? Objective::infinity : expected_of_others(1);
+      return made_.empty() ? Objective::infinity : expected_of_others(kind, 1);
     case Kind::partly: return expected_of_partly();
   }
   return {};
@@ -159,22 +159,27 @@ CompletedCones SymmetryChoice::symmetric_cones(const Progress& progress) {
   return cones;
 }
 
-std::optional<double> SymmetryChoice::expected_of_others(double asymmetry) const {
+std::optional<double> SymmetryChoice::expected_of_others(Kind kind, double asymmetry) const {
   if (made_.empty() || !alike_) return {};
   const Weights& weights = objective_.weights();
-  const MadeCandidate& best =
-      *std::min_element(made_.begin(), made_.end(), [&](const MadeCandidate& one, const MadeCandidate& other) {
+  const auto cheapest =
+      std::min_element(made_.begin(), made_.end(), [&](const MadeCandidate& one, const MadeCandidate& other) {
         return cost(one.quality, weights) < cost(other.quality, weights);
       });
-  Quality other = best.quality;
+  // Through the same cones maps are stretched alike, wherever cuts run.
+  const MadeCandidate* same_cones = kind == Kind::free_cuts ? made(Kind::symmetric) : nullptr;
+  const MadeCandidate& like = same_cones != nullptr ? *same_cones : *cheapest;
+  Quality other = like.quality;
   if (other.cuts == 0) return {};  // so there are no other ones
   if (other.asymmetry > asymmetry * share_) return {};
   const double left = options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
   other.islands = std::max<double>(surface_.parts.count(), islands_of_others * other.islands);
-  other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));
+  if (same_cones == nullptr) {
+    other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));
+  }
   other.asymmetry = asymmetry * share_;
-  other.on_lattice = cost_on_even_lattice(best.map->result);
-  if (!may_cost_less(best, other)) return {};
+  other.on_lattice = cost_on_even_lattice(like.map->result);
+  if (!may_cost_less(like, other)) return {};
   return cost(other, weights);
 }
 

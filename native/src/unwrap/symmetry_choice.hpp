@@ -51,9 +51,9 @@ class SymmetryChoice {
   CompletedCones placed(Placing how, const Progress& progress) const;
   CompletedCones symmetric_cones(const Progress& progress);
 
-  // Of maps with other cones or cuts than those that were made: stretched as much, unless that is more than cones are
-  // placed for, with three quarters of the islands.
-  std::optional<double> expected_of_others(double asymmetry) const;
+  // Of maps with other cones or cuts than those that were made: stretched as much, unless the cones are others and that
+  // is more than they are placed for, with three quarters of the islands.
+  std::optional<double> expected_of_others(Kind kind, double asymmetry) const;
   // Whether it could cost less than one that is made, if all went well.
   bool may_cost_less(const MadeCandidate& made, Quality other) const;
   // Where both of the other ones were made: the sum over components, which is known.

@@ -7,6 +7,7 @@ import math
 
 import lsgp
 import meshes
+import numpy as np
 import pytest
 from map_checks import surface
 
@@ -50,3 +51,15 @@ def test_no_map_is_made_that_could_not_cost_less_if_all_went_well() -> None:
     made = {choice.name for choice in result.choices if choice.cost is not None}
     assert "symmetric cones and cuts" in made
     assert not made & {"symmetric cones, other cuts", "usual cones", "further islands"}
+
+
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_other_cuts_are_not_expected_to_stretch_less(seed: int) -> None:
+    body = meshes.voxels(np.random.default_rng(seed).uniform(size=(4, 4, 4)) > 0.35)
+    stretch_and_cones = lsgp.Weights(islands=0, cuts=0, borders=0, square=0)
+    result = lsgp.auto_unwrap(surface(body), creases=False, weights=stretch_and_cones)
+    symmetric, other = (
+        next(choice for choice in result.choices if choice.name == name)
+        for name in ("symmetric cones and cuts", "symmetric cones, other cuts")
+    )
+    assert other.estimate >= symmetric.cost
