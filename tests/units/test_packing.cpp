@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "packing/bit_columns.hpp"
 #include "packing/bit_rows.hpp"
 #include "packing/body.hpp"
 #include "packing/construction.hpp"
@@ -124,6 +125,33 @@ TEST_CASE("the texels that are drawn are all those within reach") {
         }
       }
     }
+  }
+}
+
+TEST_CASE("texels that two rasters share at any place are those counted one by one") {
+  std::mt19937 random(7);
+  for (int k = 0; k < 200; ++k) {
+    BitRows rows[]{{1 + uniform_below(random, 90), 1 + uniform_below(random, 200)},
+                   {1 + uniform_below(random, 90), 1 + uniform_below(random, 200)}};
+    for (BitRows& raster : rows) {
+      for (int row = 0; row < raster.rows(); ++row) {
+        const int begin = uniform_below(random, raster.columns());
+        raster.set(row, begin, begin + uniform_below(random, raster.columns()) + 1);
+      }
+    }
+    const int right = uniform_below(random, 500) - 250, up = uniform_below(random, 220) - 110;
+    int expected = 0;
+    for (int row = 0; row < rows[0].rows(); ++row) {
+      for (int column = 0; column < rows[0].columns(); ++column) {
+        const int x = column - right, y = row - up;
+        const bool is_inside = x >= 0 && x < rows[1].columns() && y >= 0 && y < rows[1].rows();
+        expected += is_inside && rows[0].is_set(row, column) && rows[1].is_set(y, x);
+      }
+    }
+    const BitColumns a(rows[0]), b(rows[1]);
+    std::ptrdiff_t words = 0;
+    CHECK(shared_bits(a, b, right, up, 1 << 20, words) == expected);
+    if (expected > 0) CHECK(shared_bits(a, b, right, up, expected - 1, words) > expected - 1);
   }
 }
 

@@ -224,7 +224,7 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
     cells.map_area.push_back(map_area);
     cells.faces.push_back(static_cast<Index>(pieces[cell].size()));
     cells.center.push_back(area > 0 ? center / area : center_[pieces[cell].front()]);
-    cells.hull.push_back(hull_of(pieces[cell]));
+    cells.support.emplace_back(hull_of(pieces[cell]));
   }
   for (const Index face : island) {
     graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
@@ -362,7 +362,7 @@ WholeIsland Compactor::describe(const Array<Index>& faces, const Array<Complex>&
     area += graph_.area[face];
     squares += graph_.area[face] * std::norm(std::log(map_area_[face] / graph_.area[face]));
   }
-  WholeIsland out = search_.describe(area, hull);
+  WholeIsland out = search_.describe(area, Support(hull));
   out.unevenness = std::sqrt(squares / area);
   return out;
 }
@@ -390,7 +390,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
       const Array<Index> class_of = without_slivers(faces, island, cut_along(lines, faces, width));
       Array<Array<Index>> pieces = pieces_of(faces, class_of);
       double after = 0;
-      for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
+      for (const Array<Index>& piece : pieces) after += search_.demand(Support(hull_of(piece)));
       // The cells only gave an estimate of the gain.
       const double worth = search_.worth(island.demand - after, length_between(faces, class_of), pieces.size());
       if (worth > most_worth * (1 + rounding)) {

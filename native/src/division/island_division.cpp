@@ -37,7 +37,7 @@ constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12;
 constexpr std::ptrdiff_t most_lines = 2;
-constexpr double operations_a_point = 60;  // of finding hulls
+constexpr double operations_a_cell = 300;  // of finding how far pieces reach
 constexpr double same_line = 1e-6;         // of normals, and of offsets relative to the extent
 
 // Adds the mirror images of lines that are not among them.
@@ -56,6 +56,31 @@ void add_images(const Line& axis, double extent, Array<Line>& lines) {
 
 }  // namespace
 
+Support::Support(const Array<Complex>& points) : Support() {
+  static const std::array<Complex, 4 * turns> directions = [] {
+    std::array<Complex, 4 * turns> out;
+    for (int i = 0; i < 4 * turns; ++i) out[i] = std::polar(1.0, M_PI / 2 * i / turns);
+    return out;
+  }();
+  for (const Complex point : points) {
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const double along = point.real() * directions[i].real() + point.imag() * directions[i].imag();
+      along_[i] = std::max(along_[i], along);
+    }
+  }
+}
+
+double Support::hull_area() const {
+  constexpr int count = 4 * turns;
+  static const double cosine = std::cos(M_PI / 2 / turns), sine = std::sin(M_PI / 2 / turns);
+  double doubled = 0;
+  for (int i = 0; i < count; ++i) {
+    const double beside = along_[(i + 1) % count] + along_[(i + count - 1) % count];
+    doubled += along_[i] * (beside - 2 * cosine * along_[i]) / sine;
+  }
+  return doubled / 2;
+}
+
 DivisionSearch::DivisionSearch(const SharedSquare& square)
     : area_(square.area), price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1) {}
 
@@ -72,16 +97,14 @@ bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& islan
   return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
 }
 
-WholeIsland DivisionSearch::describe(double area, const Array<Complex>& hull) const {
-  constexpr int turns = 45;  // of a quarter
+WholeIsland DivisionSearch::describe(double area, const Support& support) const {
   double box = std::numeric_limits<double>::infinity(), square = box;
-  for (int i = 0; i < turns; ++i) {
-    const Extent extent = extent_along(hull, std::polar(1.0, M_PI / 2 * i / turns));
-    box = std::min(box, extent.width() * extent.height());
-    square = std::min(square, std::max(extent.width(), extent.height()));
+  for (int turn = 0; turn < Support::turns; ++turn) {
+    box = std::min(box, support.width(turn) * support.height(turn));
+    square = std::min(square, std::max(support.width(turn), support.height(turn)));
   }
   const double too_large = std::max(0.0, square * square - large * area_ / fill);
-  return {area, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
+  return {area, (support.hull_area() + box) / 2 + cost_of_large * too_large, too_large > 0};
 }
 
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
@@ -100,20 +123,18 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     else
       length += link.length;
   }
-  Array<Index> number(cells.count(), none), points;
+  Array<Index> number(cells.count(), none);
   Array<Piece> pieces;
   for (Index cell = 0; cell < cells.count(); ++cell) {
     const Index root = sets.find(cell);
     if (root == cell) {
       number[cell] = static_cast<Index>(pieces.size());
       pieces.emplace_back();
-      points.push_back(0);
     }
     number[cell] = number[root];
     pieces[number[cell]].area += cells.area[cell];
     pieces[number[cell]].map_area += cells.map_area[cell];
     pieces[number[cell]].faces += cells.faces[cell];
-    points[number[cell]] += static_cast<Index>(cells.hull[cell].size());
   }
   if (pieces.size() < 2 || static_cast<Index>(pieces.size()) > most_pieces) return 0;
   for (const IslandCells::Link& link : cells.links) {
@@ -122,24 +143,16 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
   }
   const auto may_be = [&](const Piece& piece) { return may_be_cut_off(piece, island); };
   if (!std::all_of(pieces.begin(), pieces.end(), may_be)) return 0;
+  Array<Support> support(pieces.size());
+  for (Index cell = 0; cell < cells.count(); ++cell) support[number[cell]].add(cells.support[cell]);
   double after = 0;
-  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
-    Eigen::VectorXcd corners(points[piece]);
-    Eigen::Index next = 0;
-    for (Index cell = 0; cell < cells.count(); ++cell) {
-      if (number[cell] != static_cast<Index>(piece)) continue;
-      for (const Complex z : cells.hull[cell]) corners[next++] = z;
-    }
-    after += demand(convex_hull(corners));
-  }
+  for (const Support& piece : support) after += demand(piece);
   return worth(island.demand - after, length, pieces.size());
 }
 
 IslandDivision DivisionSearch::find_division(const IslandCells& cells, const WholeIsland& island,
                                              const Array<Complex>& hull, Complex along,
                                              const std::optional<Line>& axis) const {
-  std::size_t points = 0;
-  for (const Array<Complex>& own : cells.hull) points += own.size();
   IslandDivision best;
   Array<Index> class_of(cells.count());
   const auto consider = [&](Array<Line> lines) {
@@ -151,7 +164,7 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Who
     }
     const double gain = worth(cells, class_of, island);
     if (gain > best.worth) best = {std::move(lines), gain};
-    checkpoint(operations_a_point * static_cast<double>(points));
+    checkpoint(operations_a_cell * static_cast<double>(cells.count()));
   };
   Complex center = 0;
   for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / island.area * cells.center[cell];

@@ -2,7 +2,10 @@
 // The best division of an island, with which all islands fill a square better.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <complex>
+#include <limits>
 #include <optional>
 
 #include "base/array.hpp"
@@ -33,6 +36,28 @@ struct Line {
   }
 };
 
+// How far points reach along evenly spread directions, from which the sizes of their hull follow: that of a union is
+// the larger of both along each.
+class Support {
+ public:
+  static constexpr int turns = 45;  // in a quarter
+
+  Support() { along_.fill(-std::numeric_limits<double>::infinity()); }
+  explicit Support(const Array<Complex>& points);
+
+  void add(const Support& other) {
+    for (std::size_t i = 0; i < along_.size(); ++i) along_[i] = std::max(along_[i], other.along_[i]);
+  }
+  // Of the least polygon with sides across these directions that contains the points.
+  double hull_area() const;
+  // Of the box that is turned by so many of the turns.
+  double width(int turn) const { return along_[turn] + along_[turn + 2 * turns]; }
+  double height(int turn) const { return along_[turn + turns] + along_[turn + 3 * turns]; }
+
+ private:
+  std::array<double, 4 * turns> along_;
+};
+
 // A way to divide an island: by a line, or by two that cross.
 struct IslandDivision {
   Array<Line> lines;
@@ -49,7 +74,7 @@ struct IslandCells {
   Array<Complex> center;
   Array<double> area, map_area;
   Array<Index> faces;  // their number
-  Array<Array<Complex>> hull;
+  Array<Support> support;
   Array<Link> links;
   Index count() const { return static_cast<Index>(area.size()); }
 };
@@ -75,10 +100,10 @@ class DivisionSearch {
  public:
   explicit DivisionSearch(const SharedSquare& square);
 
-  // An island of this area with this hull, its unevenness left out.
-  WholeIsland describe(double area, const Array<Complex>& hull) const;
-  // The area of the square that an island with this hull occupies.
-  double demand(const Array<Complex>& hull) const { return describe(0, hull).demand; }
+  // An island of this area, its unevenness left out.
+  WholeIsland describe(double area, const Support& support) const;
+  // The area of the square that an island occupies.
+  double demand(const Support& support) const { return describe(0, support).demand; }
 
   // Whether a piece of an island is large enough, not a scrap of few faces, and has about the texel density of all,
   // which matters the less, the more the island leaves empty of what it occupies. Pieces of few faces may be as small

@@ -30,13 +30,12 @@ constexpr double most_growth = 4;
 // Where so little of the area is filled, sides along the axes are given up for a layout whose side is so much shorter,
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
-// How long better orders are looked for at each effort, and then smaller squares, in about nanoseconds.
-constexpr double work_of_orders[]{4e6, 2e7, 1e9}, work_of_separation[]{8e6, 1.2e8, 9e9};
+// How long smaller squares are looked for at each effort, or better orders where bodies may not overlap at first, in
+// about nanoseconds: `good` where twice as much fills half a hundredth more of the square.
+constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
 // Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken.
 constexpr double whole_work_from = 10;
 constexpr std::size_t most_quick = 32;
-// Of the seconds that are allowed, for orders.
-constexpr double share_of_orders = 0.1;
 // Of more bodies, overlaps of pairs are not looked at.
 constexpr std::size_t most_separated = 200;
 // By how much gaps are wider than asked for, so that rounding never makes them narrower, of the side.
@@ -335,9 +334,7 @@ void LayoutSearch::settle(Constructed& found, double gap) {
 
 // The layout of the earlier search, if that is better and has the same poses.
 void LayoutSearch::take_up_earlier() {
-  if (earlier_ == nullptr || !grows() || options_.snap > 0 || earlier_->now_.texel != now_.texel ||
-      !(earlier_->now_.side < now_.side))
-    return;
+  if (earlier_ == nullptr || earlier_->now_.texel != now_.texel || !(earlier_->now_.side < now_.side)) return;
   State there = earlier_->now_;
   for (const Index b : free_) {
     const auto& poses = now_.poses[b];
@@ -352,9 +349,10 @@ void LayoutSearch::take_up_earlier() {
   now_ = std::move(there);
 }
 
+bool LayoutSearch::can_separate() const { return grows() && options_.snap == 0 && free_.size() <= most_separated; }
+
 // Smaller squares, in which bodies overlap at first.
 void LayoutSearch::separate(const Budget& budget) {
-  if (!grows() || options_.snap > 0 || free_.size() > most_separated) return;
   // By how much smaller the square is tried, after this many failures; then again from the first on.
   constexpr double shrinks[]{0.99, 0.99, 0.995, 0.995, 0.9975, 0.9975, 0.9975};
   constexpr std::size_t shrink_count = sizeof(shrinks) / sizeof(shrinks[0]);
@@ -440,8 +438,7 @@ PackedLayout LayoutSearch::best() {
 // The directions in a quarter turn of one of so many equal bodies.
 int LayoutSearch::directions_among(double count) const {
   constexpr double few = 8, some = 64;
-  if (options_.effort == PackingEffort::quick) return count <= few ? 8 : 0;
-  return count <= few ? 16 : count <= some ? 4 : 0;
+  return count <= few ? 8 : count <= some && options_.effort != PackingEffort::quick ? 4 : 0;
 }
 
 // Throws WRONG_PARAMETER where blocks are so small that a raster of them would not fit into memory, or so large that
@@ -479,17 +476,13 @@ void LayoutSearch::search(bool also_along_axes) {
   const bool is_quick = options_.effort == PackingEffort::quick;
   if (is_quick && free_.size() > most_quick) return;
   const double part_of_work = is_quick ? std::min(static_cast<double>(free_.size()) / whole_work_from, 1.0) : 1.0;
-  const auto seconds = [&](double share) {
-    return options_.effort == PackingEffort::best && options_.seconds ? std::optional(share * *options_.seconds)
-                                                                      : std::nullopt;
+  const auto budget = [&](const double(&work)[3]) {
+    return Budget(part_of_work * work[effort],
+                  options_.effort == PackingEffort::best ? options_.seconds : std::nullopt);
   };
-  {
-    const ProgressMonitor::Interval part(monitor_, 0, share_of_orders);
-    vary_order(Budget(part_of_work * work_of_orders[effort], seconds(share_of_orders)));
-  }
+  if (!can_separate()) return vary_order(budget(work_of_orders));
   take_up_earlier();
-  const ProgressMonitor::Interval part(monitor_, share_of_orders, 1);
-  separate(Budget(part_of_work * work_of_separation[effort], seconds(1 - share_of_orders)));
+  separate(budget(work_of_separation));
 }
 
 // Whether other turns of bodies that lie along the axes may be worth it, as of long strips.

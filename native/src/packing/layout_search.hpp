@@ -104,6 +104,7 @@ class LayoutSearch {
   void tighten(double with_margins_for);
   void vary_order(const Budget& budget);
   void take_up_earlier();
+  bool can_separate() const;
   void separate(const Budget& budget);
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);

@@ -17,8 +17,8 @@ constexpr int tried_poses = 3, places_anywhere = 16, places_nearby = 6, improved
 constexpr int nearby = 12, first_step = 4;  // texels
 // By how much the weights of overlaps grow in a round at most and at least, and those of others shrink.
 constexpr double most_growth_of_weight = 2, least_growth_of_weight = 1.2, decay = 0.95;
-// Nanoseconds of a pair of rows, and of a pair of bodies.
-constexpr double cost_of_row_pair = 4, cost_of_body_pair = 3;
+// Nanoseconds of a pair of words, of an overlap besides, and of a pair of bodies whose boxes do not meet.
+constexpr double cost_of_word_pair = 1, cost_of_overlap = 20, cost_of_body_pair = 3;
 
 }  // namespace
 
@@ -36,9 +36,10 @@ const Separation::Texels& Separation::texels(Index body, int pose) {
   if (!found) {
     const Pose& of = poses_[body][pose];
     const int rows = static_cast<int>(of.height) + 1, columns = static_cast<int>(of.width) + 1;
-    found = Texels{BitRows(rows, columns), BitRows(rows + 2 * reach_, columns + 2 * reach_)};
-    draw(of.outline, 0, found->own);
-    draw(of.outline.moved(1, Complex(reach_, reach_)), gap_, found->widened);
+    BitRows own(rows, columns), widened(rows + 2 * reach_, columns + 2 * reach_);
+    draw(of.outline, 0, own);
+    draw(of.outline.moved(1, Complex(reach_, reach_)), gap_, widened);
+    found = Texels{BitColumns(own), BitColumns(widened)};
     work_ += 4.0 * (rows + 2 * reach_) * (columns + 2 * reach_);
   }
   return *found;
@@ -47,19 +48,12 @@ const Separation::Texels& Separation::texels(Index body, int pose) {
 // The number of texels of one that are nearer to the other than the gap, or more than `most` if that is less.
 int Separation::overlap(Index a, const Place& at_a, Index b, const Place& at_b, double most) {
   if (a > b) return overlap(b, at_b, a, at_a, most);
-  const BitRows& own = texels(a, at_a.pose).own;
-  const BitRows& widened = texels(b, at_b.pose).widened;
-  const int column = at_b.column - reach_, row = at_b.row - reach_;
-  const int left = std::max(at_a.column, column);
-  const int right = std::min(at_a.column + own.columns(), column + widened.columns());
-  const int bottom = std::max(at_a.row, row), top = std::min(at_a.row + own.rows(), row + widened.rows());
-  int count = 0, y = bottom;
-  for (; y < top && count <= most; ++y) {
-    for (int x = left; x < right; x += BitRows::word_bits)
-      count += bit_count(own.from(y - at_a.row, x - at_a.column) & widened.from(y - row, x - column));
-  }
-  const int words = (right - left) / BitRows::word_bits + 1;
-  work_ += cost_of_row_pair * std::max(y - bottom, 0) * words;
+  const BitColumns& own = texels(a, at_a.pose).own;
+  const BitColumns& widened = texels(b, at_b.pose).widened;
+  std::ptrdiff_t words = 0;
+  const int count = shared_bits(own, widened, at_b.column - reach_ - at_a.column, at_b.row - reach_ - at_a.row,
+                                static_cast<int>(std::min(most, 1e9)), words);
+  work_ += cost_of_overlap + cost_of_word_pair * static_cast<double>(words);
   return count;
 }
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/array.hpp"
-#include "packing/bit_rows.hpp"
+#include "packing/bit_columns.hpp"
 #include "packing/construction.hpp"
 
 namespace lsgp {
@@ -39,7 +39,7 @@ class Separation {
   };
   // The texels of a pose, and those nearer to it than the gap, `reach` texels further to the left and below.
   struct Texels {
-    BitRows own, widened;
+    BitColumns own, widened;
   };
 
   // Columns and rows, the last ones included.

@@ -73,7 +73,7 @@ double demand(const SharedSquare& square, const IslandLayout& layout) {
   const DivisionSearch search(square);
   double out = 0;
   for (const Array<Complex>& own : points) {
-    out += search.demand(convex_hull(Eigen::Map<const Eigen::VectorXcd>(own.data(), ssize(own))));
+    out += search.demand(Support(convex_hull(Eigen::Map<const Eigen::VectorXcd>(own.data(), ssize(own)))));
   }
   return out;
 }

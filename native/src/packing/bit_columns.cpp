@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "packing/bit_columns.hpp"
+
+#include <algorithm>
+
+namespace lsgp {
+
+namespace {
+
+using Word = BitColumns::Word;
+
+// The sums of eight bits fit into bytes for so many words.
+constexpr int most_words = 31;
+
+int floor_divided(int number, int by) { return number >= 0 ? number / by : -((by - 1 - number) / by); }
+
+// The bits that are set both in `a` and in the words that begin `shift` bits into `low`, of at most `most_words` words.
+int shared_bits_of_words(const Word* a, const Word* low, const Word* high, int shift, int count) {
+  constexpr Word twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f,
+                 even_bytes = 0x00ff00ff00ff00ff, ones = 0x0001000100010001;
+  Word sums = 0;
+  for (int i = 0; i < count; ++i) {
+    Word word = a[i] & (low[i] >> shift | high[i] << 1 << (BitColumns::word_bits - 1 - shift));
+    word -= word >> 1 & twos;
+    word = (word & fours) + (word >> 2 & fours);
+    sums += (word + (word >> 4)) & bytes;
+  }
+  sums = (sums & even_bytes) + (sums >> 8 & even_bytes);
+  return static_cast<int>(sums * ones >> 48);
+}
+
+}  // namespace
+
+BitColumns::BitColumns(const BitRows& rows)
+    : rows_(rows.rows()),
+      columns_(rows.columns()),
+      words_((rows.columns() + word_bits - 1) / word_bits),
+      bits_((words_ + 2) * std::ptrdiff_t{rows_}, 0) {
+  for (int y = 0; y < rows_; ++y) {
+    for (int k = 0; k < words_; ++k) bits_[(k + 1) * std::ptrdiff_t{rows_} + y] = rows.row(y)[k];
+  }
+}
+
+int shared_bits(const BitColumns& a, const BitColumns& b, int right, int up, int most, std::ptrdiff_t& words) {
+  const int first = std::max(floor_divided(right, BitColumns::word_bits), 0);
+  const int end = std::min(floor_divided(right + b.columns() - 1, BitColumns::word_bits) + 1, a.words());
+  const int top = std::min(a.rows(), up + b.rows());
+  int count = 0;
+  for (int y = std::max(up, 0); y < top && count <= most; y += most_words) {
+    const int rows = std::min(top - y, most_words);
+    for (int k = first; k < end; ++k) {
+      const int from = k * BitColumns::word_bits - right;
+      const int number = floor_divided(from, BitColumns::word_bits);
+      count += shared_bits_of_words(a.column(k) + y, b.column(number) + y - up, b.column(number + 1) + y - up,
+                                    from - number * BitColumns::word_bits, rows);
+    }
+    words += std::ptrdiff_t{rows} * std::max(end - first, 0);
+  }
+  return count;
+}
+
+}  // namespace lsgp
