@@ -23,6 +23,7 @@ constexpr double least_matched = 0.98;   // of the vertices of a symmetric surfa
 constexpr double likely_matched = 0.9;   // of some of them
 constexpr double least_moved = 0.1;      // of the vertices, whose images are others
 constexpr Index most_samples = 500;      // that judge a plane before all vertices do
+constexpr std::size_t apart = 4;         // of these, that are fitted
 constexpr int most_fits = 20;            // of a plane
 constexpr double operations_a_search = 500;
 
@@ -124,12 +125,16 @@ class MirroredSurface {
   // Moves a plane to where the images of points are nearest to the surface: nearest points and the best plane for them
   // in turn (iterative closest points).
   MirrorPlane fitted(MirrorPlane plane) const {
-    for (int i = 0; i < most_fits; ++i) {
-      Positions from(samples_.size(), 3), to(samples_.size(), 3);
-      for (std::size_t s = 0; s < samples_.size(); ++s) {
-        const auto row = static_cast<Eigen::Index>(s);
-        from.row(row) = mesh_.positions.row(samples_[s]);
-        to.row(row) = mesh_.positions.row(tree_.nearest(reflected(plane, from.row(row))).point);
+    Array<Index> image;
+    for (std::size_t s = 0; s < samples_.size(); s += apart) image.push_back(samples_[s]);
+    Positions from(image.size(), 3), to(image.size(), 3);
+    for (std::size_t i = 0; i < image.size(); ++i)
+      from.row(static_cast<Eigen::Index>(i)) = mesh_.positions.row(image[i]);
+    for (int fit = 0; fit < most_fits; ++fit) {
+      for (std::size_t i = 0; i < image.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        image[i] = tree_.nearest(reflected(plane, from.row(row)), image[i]).point;
+        to.row(row) = mesh_.positions.row(image[i]);
       }
       const Eigen::RowVector3d middle = (from + to).colwise().mean() / 2;
       const Eigen::Matrix3d product = (from.rowwise() - middle).transpose() * (to.rowwise() - middle);
@@ -151,8 +156,9 @@ class MirroredSurface {
 
   template <typename Test>
   bool is_likely(Test is_matched) const {
-    const auto matched = std::count_if(samples_.begin(), samples_.end(), is_matched);
-    return static_cast<double>(matched) >= likely_matched * static_cast<double>(samples_.size());
+    double unmatched = (1 - likely_matched) * static_cast<double>(samples_.size());
+    return std::all_of(samples_.begin(), samples_.end(),
+                       [&](Index v) { return is_matched(v) || (unmatched -= 1) >= 0; });
   }
 
   bool are_alike(Index a, Index b) const {

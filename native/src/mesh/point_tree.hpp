@@ -23,6 +23,8 @@ class PointTree {
     double distance = 0;
   };
   Nearest nearest(const Eigen::RowVector3d& at) const;
+  // The same, sooner if this point is near.
+  Nearest nearest(const Eigen::RowVector3d& at, Index guess) const;
 
  private:
   static constexpr Index leaf = 8;  // points
@@ -30,10 +32,12 @@ class PointTree {
   // The axis along which the points order_[begin, end) are halved.
   int widest_axis(Index begin, Index end) const;
   void build(Index begin, Index end);
+  // best: with the square of its distance.
   void search(const Eigen::RowVector3d& at, Index begin, Index end, Nearest& best) const;
 
   const Positions& points_;
   Array<Index> order_;
+  Positions in_order_;
   Array<unsigned char> axis_;  // by the middle of a range
 };
 
