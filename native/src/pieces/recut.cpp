@@ -167,17 +167,18 @@ void Recutter::for_each_side(Index piece, const Motion& motion, Visit visit) {
 }
 
 CoverageRaster Recutter::raster_of(const Array<Index>& pieces) {
+  Array<PieceGraph::Side> sides;
+  sides.reserve(count_sides(pieces));
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box frame{infinity, -infinity, infinity, -infinity};
   for (const Index piece : pieces) {
-    const Complex z = now_.motion[piece](circles_[piece].center);
-    const double radius = circles_[piece].radius;
-    frame = around(frame, {z.real() - radius, z.real() + radius, z.imag() - radius, z.imag() + radius});
+    for_each_side(piece, {}, [&](Complex tail, Complex head) {
+      sides.push_back({tail, head});
+      frame = around(frame, {tail.real(), tail.real(), tail.imag(), tail.imag()});
+    });
   }
   CoverageRaster raster(frame, std::sqrt(area_ / cells_of_layout));
-  for (const Index piece : pieces) {
-    for_each_side(piece, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
-  }
+  for (const PieceGraph::Side& side : sides) raster.add(side.tail, side.head);
   raster.sum_up();
   return raster;
 }
@@ -187,6 +188,11 @@ double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces
                         GoesOn goes_on) {
   double out = 0;
   for (const Index piece : pieces) {
+    const Complex center = motion(now_.motion[piece](circles_[piece].center));
+    const double radius = circles_[piece].radius;
+    if (!meet(raster.frame(),
+              {center.real() - radius, center.real() + radius, center.imag() - radius, center.imag() + radius}))
+      continue;
     for_each_side(piece, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
     if (!goes_on(out)) break;
   }

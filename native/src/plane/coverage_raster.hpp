@@ -15,6 +15,7 @@ class CoverageRaster {
   // cell: side of a cell; larger if the frame would need too many.
   CoverageRaster(const Box& frame, double cell);
 
+  const Box& frame() const { return frame_; }
   void add(Complex tail, Complex head);
   // Call once all edges are added.
   void sum_up();
