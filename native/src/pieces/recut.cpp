@@ -17,7 +17,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
+constexpr double cells_of_layout = 8192;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. Descents with cheap cuts separate pieces that
 // would otherwise remain entangled.
 constexpr double weights[] = {1.5, 0.3, 0.7};
