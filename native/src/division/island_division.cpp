@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -36,7 +37,7 @@ constexpr double sparing_factor = 8;
 constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12;
-constexpr std::ptrdiff_t most_lines = 2;
+constexpr int most_lines = 2;
 constexpr double operations_a_cell = 300;  // of finding how far pieces reach
 constexpr double same_line = 1e-6;         // of normals, and of offsets relative to the extent
 
@@ -52,6 +53,45 @@ void add_images(const Line& axis, double extent, Array<Line>& lines) {
     };
     if (std::none_of(lines.begin(), lines.end(), is_image)) lines.push_back(image);
   }
+}
+
+// On which sides of all lines that are tried together a cell lies, one bit each.
+using Sides = std::uint32_t;
+static_assert(most_lines * division_positions <= std::numeric_limits<Sides>::digits);
+
+struct MergedCells {
+  IslandCells cells;  // without their centers
+  Array<Sides> sides;
+};
+
+// Cells that hang together on the same sides, which no division separates.
+MergedCells merge(const IslandCells& cells, const Array<Sides>& sides) {
+  UnionFind sets(cells.count());
+  for (const IslandCells::Link& link : cells.links) {
+    if (sides[link.cells[0]] == sides[link.cells[1]]) sets.unite(link.cells[0], link.cells[1]);
+  }
+  MergedCells out;
+  Array<Index> number(cells.count(), none);
+  for (Index cell = 0; cell < cells.count(); ++cell) {
+    Index& own = number[sets.find(cell)];
+    if (own == none) {
+      own = out.cells.count();
+      out.sides.push_back(sides[cell]);
+      out.cells.area.push_back(0);
+      out.cells.map_area.push_back(0);
+      out.cells.faces.push_back(0);
+      out.cells.support.emplace_back();
+    }
+    out.cells.area[own] += cells.area[cell];
+    out.cells.map_area[own] += cells.map_area[cell];
+    out.cells.faces[own] += cells.faces[cell];
+    out.cells.support[own].add(cells.support[cell]);
+  }
+  for (const IslandCells::Link& link : cells.links) {
+    const Index here = number[sets.find(link.cells[0])], there = number[sets.find(link.cells[1])];
+    if (here != there) out.cells.links.push_back({{here, there}, link.length, link.is_smooth});
+  }
+  return out;
 }
 
 }  // namespace
@@ -154,29 +194,45 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Who
                                              const Array<Complex>& hull, Complex along,
                                              const std::optional<Line>& axis) const {
   IslandDivision best;
-  Array<Index> class_of(cells.count());
-  const auto consider = [&](Array<Line> lines) {
-    if (axis) add_images(*axis, std::sqrt(area_), lines);
-    if (ssize(lines) > most_lines) return;
-    for (Index cell = 0; cell < cells.count(); ++cell) {
-      class_of[cell] = 0;
-      for (const Line& line : lines) class_of[cell] = 2 * class_of[cell] + (line.distance(cells.center[cell]) > 0);
+  const auto consider = [&](Array<Array<Line>> divisions) {
+    if (axis) {
+      for (Array<Line>& lines : divisions) add_images(*axis, std::sqrt(area_), lines);
     }
-    const double gain = worth(cells, class_of, island);
-    if (gain > best.worth) best = {std::move(lines), gain};
+    const auto has_too_many = [](const Array<Line>& lines) { return ssize(lines) > most_lines; };
+    divisions.erase(std::remove_if(divisions.begin(), divisions.end(), has_too_many), divisions.end());
+    Array<Sides> sides(cells.count(), 0);
+    for (Index cell = 0; cell < cells.count(); ++cell) {
+      for (std::size_t i = 0; i < divisions.size(); ++i) {
+        for (std::size_t k = 0; k < divisions[i].size(); ++k) {
+          const bool is_ahead = divisions[i][k].distance(cells.center[cell]) > 0;
+          sides[cell] |= static_cast<Sides>(is_ahead) << (most_lines * i + k);
+        }
+      }
+    }
+    const MergedCells merged = merge(cells, sides);
+    Array<Index> class_of(merged.cells.count());
+    for (std::size_t i = 0; i < divisions.size(); ++i) {
+      for (Index cell = 0; cell < merged.cells.count(); ++cell)
+        class_of[cell] = static_cast<Index>(merged.sides[cell] >> (most_lines * i) & ((1 << most_lines) - 1));
+      const double gain = worth(merged.cells, class_of, island);
+      if (gain > best.worth) best = {std::move(divisions[i]), gain};
+    }
     checkpoint(operations_a_cell * static_cast<double>(cells.count()));
   };
   Complex center = 0;
   for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / island.area * cells.center[cell];
-  if (axis) consider({*axis});
+  if (axis) consider({{*axis}});
   for (int i = 0; i < directions; ++i) {
     const Complex normal = along * std::polar(1.0, M_PI * i / directions);
     const Extent extent = extent_along(hull, normal);
+    Array<Array<Line>> divisions;
     for (int k = 1; k < division_positions; ++k)
-      consider({{normal, extent.low.real() + extent.width() * k / division_positions}});
-    if (2 * i >= directions) continue;
-    const Complex across = normal * Complex(0, 1);
-    consider({{normal, Line{normal, 0}.distance(center)}, {across, Line{across, 0}.distance(center)}});
+      divisions.push_back({{normal, extent.low.real() + extent.width() * k / division_positions}});
+    if (2 * i < directions) {
+      const Complex across = normal * Complex(0, 1);
+      divisions.push_back({{normal, Line{normal, 0}.distance(center)}, {across, Line{across, 0}.distance(center)}});
+    }
+    consider(std::move(divisions));
   }
   return best;
 }
