@@ -92,11 +92,12 @@ def island_boxes(corner_uv: FloatArray, island: IndexArray) -> FloatArray:
     corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     count = int(island.max(initial=-1)) + 1
     solved = island >= 0
-    of_corner = np.repeat(island[solved], 3)
-    uv = corner_uv[solved].reshape(-1, 2)
+    order = np.argsort(island[solved], kind="stable")
+    uv, island = corner_uv[solved][order], island[solved][order]
     least, largest = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
-    np.minimum.at(least, of_corner, uv)
-    np.maximum.at(largest, of_corner, uv)
+    first = np.flatnonzero(np.diff(island, prepend=-1))
+    least[island[first]] = np.minimum.reduceat(uv.min(axis=1), first)
+    largest[island[first]] = np.maximum.reduceat(uv.max(axis=1), first)
     return np.concatenate([least, largest], axis=1)
 
 
