@@ -23,7 +23,6 @@ constexpr double least_matched = 0.98;   // of the vertices of a symmetric surfa
 constexpr double likely_matched = 0.9;   // of some of them
 constexpr double least_moved = 0.1;      // of the vertices, whose images are others
 constexpr Index most_samples = 500;      // that judge a plane before all vertices do
-constexpr std::size_t apart = 4;         // of these, that are fitted
 constexpr int most_fits = 20;            // of a plane
 constexpr double operations_a_search = 500;
 
@@ -125,8 +124,7 @@ class MirroredSurface {
   // Moves a plane to where the images of points are nearest to the surface: nearest points and the best plane for them
   // in turn (iterative closest points).
   MirrorPlane fitted(MirrorPlane plane) const {
-    Array<Index> image;
-    for (std::size_t s = 0; s < samples_.size(); s += apart) image.push_back(samples_[s]);
+    Array<Index> image = samples_;
     Positions from(image.size(), 3), to(image.size(), 3);
     for (std::size_t i = 0; i < image.size(); ++i)
       from.row(static_cast<Eigen::Index>(i)) = mesh_.positions.row(image[i]);

@@ -17,7 +17,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double cells_of_layout = 8192;  // of the raster, in the layout's area
+constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. Descents with cheap cuts separate pieces that
 // would otherwise remain entangled.
 constexpr double weights[] = {1.5, 0.3, 0.7};
@@ -39,6 +39,10 @@ Circle circle_around(const Array<PieceGraph::Side>& boundary) {
   for (const PieceGraph::Side& side : boundary) out.center += side.tail / static_cast<double>(boundary.size());
   for (const PieceGraph::Side& side : boundary) out.radius = std::max(out.radius, std::abs(side.tail - out.center));
   return out;
+}
+
+Box box_around(Complex center, double radius) {
+  return {center.real() - radius, center.real() + radius, center.imag() - radius, center.imag() + radius};
 }
 
 // The pieces of a layout assembled along a spanning tree, and trees with less overlap.
@@ -167,18 +171,16 @@ void Recutter::for_each_side(Index piece, const Motion& motion, Visit visit) {
 }
 
 CoverageRaster Recutter::raster_of(const Array<Index>& pieces) {
-  Array<PieceGraph::Side> sides;
-  sides.reserve(count_sides(pieces));
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box frame{infinity, -infinity, infinity, -infinity};
   for (const Index piece : pieces) {
-    for_each_side(piece, {}, [&](Complex tail, Complex head) {
-      sides.push_back({tail, head});
-      frame = around(frame, {tail.real(), tail.real(), tail.imag(), tail.imag()});
-    });
+    const Complex z = now_.motion[piece](circles_[piece].center);
+    frame = around(frame, box_around(z, circles_[piece].radius));
   }
   CoverageRaster raster(frame, std::sqrt(area_ / cells_of_layout));
-  for (const PieceGraph::Side& side : sides) raster.add(side.tail, side.head);
+  for (const Index piece : pieces) {
+    for_each_side(piece, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
+  }
   raster.sum_up();
   return raster;
 }
@@ -189,10 +191,7 @@ double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces
   double out = 0;
   for (const Index piece : pieces) {
     const Complex center = motion(now_.motion[piece](circles_[piece].center));
-    const double radius = circles_[piece].radius;
-    if (!meet(raster.frame(),
-              {center.real() - radius, center.real() + radius, center.imag() - radius, center.imag() + radius}))
-      continue;
+    if (!meet(raster.frame(), box_around(center, circles_[piece].radius))) continue;
     for_each_side(piece, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
     if (!goes_on(out)) break;
   }
