@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import lsgp
@@ -280,3 +281,11 @@ def test_a_component_that_is_mapped_in_part_is_left_out_in_part_only() -> None:
         preset="tile",
     )
     assert np.array_equal(np.unique(named_by(found, "COMPONENT_SKIPPED")), np.flatnonzero(~found.solved))
+
+
+def test_creases_of_a_broken_surface_are_walked_around_once() -> None:
+    """Some were open on one side only, around which a walk did not come back, and could not be cancelled."""
+    mesh = zoo.member("mixture-seed=630529").mesh()
+    plain = lsgp.Surface(mesh.positions, mesh.triangles)
+    marked = replace(plain, features=lsgp.feature_edges(plain, angle=0.5, borders=True))
+    assert lsgp.auto_unwrap(marked, pack="shelves").solved.any()

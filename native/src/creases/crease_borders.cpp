@@ -302,7 +302,8 @@ struct Loops {
 Loops find_loops(const MetricMesh& surface, const PerHalfedge<char>& open) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
-  const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none; };
+  // On both sides of an edge, without which a walk need not come back to its begin.
+  const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none || open[mesh.twin[h]]; };
   Loops out;
   label_parts(mesh, open, out.island);
   out.at_corner.assign(mesh.halfedge_count(), none);
