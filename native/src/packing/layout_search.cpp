@@ -34,7 +34,7 @@ constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // about nanoseconds: `good` where twice as much fills half a hundredth more of the square.
 constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
 // Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken.
-constexpr double whole_work_from = 10;
+constexpr double whole_work_from = 4;
 constexpr std::size_t most_quick = 32;
 // Of more bodies, overlaps of pairs are not looked at.
 constexpr std::size_t most_separated = 200;
