@@ -27,7 +27,7 @@ namespace {
 constexpr double cost_of_one_side = 4;
 // The share of a square that islands alike on both sides may take, relative to that of islands cut only to fill it.
 constexpr double most_demand = 1.05;
-// Divided maps that are regrouped, the cheapest ones, and then those whose pieces make room for others.
+// Regrouped maps that are kept, and whose pieces make room for others.
 constexpr std::size_t most_regrouped = 3;
 // No saved island is worth symmetry: by no more than this may its cuts without an image be longer.
 constexpr double least_one_sided = 0.01;
@@ -218,7 +218,7 @@ class WaySearch {
   // assumed to add at least this cost.
   void divide(const ComponentMap& way, const Array<CutCost>& rules, const Array<MetricMesh>& weighings, double least);
 
-  // Regroups the islands of the cheapest divided maps until one map is a single island.
+  // Regroups the islands of the divided maps, the cheapest first, until one map is a single island.
   void regroup_divided();
   // Whether there is a division that leaves one island.
   bool leaves_one() const { return is_one(best_) || std::any_of(of_regrouped_.begin(), of_regrouped_.end(), is_one); }
@@ -272,7 +272,6 @@ void WaySearch::divide(const ComponentMap& way, const Array<CutCost>& rules, con
 
 void WaySearch::regroup_divided() {
   sort_by_cost(waiting_);
-  waiting_.resize(std::min(waiting_.size(), most_regrouped));
   for (const Divided& divided : waiting_) {
     if (is_one(best_)) break;
     regroup_islands(divided, Regrouping::direct);
