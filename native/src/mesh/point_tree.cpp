@@ -14,8 +14,7 @@ PointTree::PointTree(Borrowed<const Positions> points)
   std::iota(order_.begin(), order_.end(), 0);
   build(0, static_cast<Index>(order_.size()));
   in_order_.resize(points_.rows(), 3);
-  for (std::size_t i = 0; i < order_.size(); ++i)
-    in_order_.row(static_cast<Eigen::Index>(i)) = points_.row(order_[i]);
+  for (std::size_t i = 0; i < order_.size(); ++i) in_order_.row(static_cast<Eigen::Index>(i)) = points_.row(order_[i]);
 }
 
 int PointTree::widest_axis(Index begin, Index end) const {
