@@ -61,9 +61,9 @@ LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Inde
                                const PackingOptions& options = {}, const Progress& progress = {});
 
 // The margin where none is asked for: that of PackingOptions or, of so many islands that the gaps between them would
-// take more than a quarter of their room, as much less as makes it that. At least half a texel of a texture of 1024, so
-// that there is one between two islands.  tiles: as in PackingOptions.  Throws WRONG_PARAMETER for what `pack_islands`
-// refuses.
+// take more than a quarter of their room, as much less as makes it a quarter. At least half a texel of a texture of
+// 1024, so that there is one between two islands.  tiles: as in PackingOptions.  Throws WRONG_PARAMETER for what
+// `pack_islands` refuses.
 LSGP_API double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island, int tiles = 1);
 
 }  // namespace lsgp

@@ -54,9 +54,9 @@ class Packing:
 
     pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if the
         margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side; None: `DEFAULT_MARGIN`
-        or, of so many islands that gaps would take a quarter of their room, less, before the layout gets a texel
-        density, which scales it too. udim: over how many UDIM tiles a tight layout is
-        spread, as by `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
+        or, of so many islands that gaps would take more than a quarter of their room, less, before the layout gets a
+        texel density, which scales it too. udim: over how many UDIM tiles a tight layout is spread, as by
+        `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
         up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
     """

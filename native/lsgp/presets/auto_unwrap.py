@@ -210,8 +210,8 @@ def auto_unwrap(
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight, unless the margins leave no room. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024 or, of so many islands
-        that the gaps would take a quarter of their room, less, down to 0.5 / 1024, before the layout gets a texel
-        density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
+        that the gaps would take more than a quarter of their room, less, down to 0.5 / 1024, before the layout gets a
+        texel density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
         `Options.square_share`; not with texels, which have their own.
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.

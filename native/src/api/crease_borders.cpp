@@ -51,10 +51,11 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     const Eigen::VectorXd bend = bends(mesh);
     PerHalfedge<char> crease(mesh.halfedge_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      if (!may_cut(mesh, h)) continue;
+      // Once for both sides: on folded triangles they may disagree about which way the surface bends.
+      if (!may_cut(mesh, h) || h > mesh.twin[h]) continue;
       const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
-      crease[h] = (bend[h] >= options.angle && !is_round(mesh, bend, h)) ||
-                  (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
+      crease[h] = crease[mesh.twin[h]] = (bend[h] >= options.angle && !is_round(mesh, bend, h)) ||
+                                         (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
     const PerHalfedge<char> open = find_crease_borders({mesh, geometry}, crease, bend, options);
     append_ends(component, open, edges);

@@ -246,8 +246,7 @@ double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island,
   constexpr double least = 0.5 / 1024;
   constexpr double filled = 0.7;  // of a tile, by islands and gaps, as layouts are about
   // Of the room of islands, what gaps take at most: with more, these and not the shapes of islands would decide what
-  // stays empty, which is about 0.4 of that room. Others leave 4 texels of 1024 between hundreds of scraps, as this
-  // does.
+  // stays empty, which is about 0.4 of that room.
   constexpr double most_gaps = 0.25;
   PackingOptions options;
   options.tiles = tiles;

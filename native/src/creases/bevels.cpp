@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 
 #include "base/checkpoint.hpp"
@@ -58,8 +59,9 @@ class Extents {
   double across(Index h, Index face) const {
     const auto at = [&](Index v) -> Eigen::RowVector3d { return mesh_.positions.row(v); };
     const Eigen::RowVector3d along = at(mesh_.target(h)) - at(mesh_.origin(h));
-    const Eigen::RowVector3d inward = at(mesh_.origin(prev(h))) - at(mesh_.origin(h));
-    const Eigen::RowVector3d across = (inward - along * (inward.dot(along) / along.squaredNorm())).normalized();
+    // The triangle itself may be a sliver.
+    const Eigen::RowVector3d across = surface_normal(mesh_, h / 3).transpose().cross(along).stableNormalized();
+    if (across.isZero(0)) return std::numeric_limits<double>::infinity();
     double least = 0, most = 0;
     for (const Index v : outermost_[face]) {
       const double here = (at(v) - at(mesh_.origin(h))).dot(across);
@@ -93,16 +95,6 @@ PerTriangle<char> find_rounded(const MetricMesh& surface, const Eigen::VectorXd&
   PerTriangle<char> out(mesh.triangle_count(), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) out[f] = is_narrow[face[f]];
   return out;
-}
-
-// Between the normals of two triangles, radians.
-double turn_between(const HalfedgeMesh& mesh, Index f, Index g) {
-  const auto normal = [&](Index of) -> Eigen::Vector3d {
-    const auto at = [&](int c) -> Eigen::Vector3d { return mesh.positions.row(mesh.triangles(of, c)).transpose(); };
-    return (at(1) - at(0)).cross(at(2) - at(0));
-  };
-  const Eigen::Vector3d one = normal(f), other = normal(g);
-  return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
 // The face beside a bevel to which a polygon is nearest, and by how much the surface turns on the way.
@@ -176,7 +168,8 @@ std::optional<Bevels> find_bevels(const MetricMesh& surface, const Eigen::Vector
     const double turn = bend[h] + unit_of_turns * static_cast<double>(here.turn + there.turn);
     if (!out.edge[h] || turn < angle) return false;
     // A face may run on around the end of a bevel, or of the crease of two bores that meet.
-    return here.face != there.face || turn_between(mesh, here.nearest, there.nearest) >= angle;
+    return here.face != there.face ||
+           angle_between(surface_normal(mesh, here.nearest), surface_normal(mesh, there.nearest)) >= angle;
   });
   return out;
 }

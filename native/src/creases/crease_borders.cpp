@@ -302,8 +302,7 @@ struct Loops {
 Loops find_loops(const MetricMesh& surface, const PerHalfedge<char>& open) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
-  // On both sides of an edge, without which a walk need not come back to its begin.
-  const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none || open[mesh.twin[h]]; };
+  const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none; };
   Loops out;
   label_parts(mesh, open, out.island);
   out.at_corner.assign(mesh.halfedge_count(), none);
@@ -495,10 +494,12 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
       bevels->crease[h] = bevels->edge[h] && !is_marked ? bevels->crease[h] && may_cut(mesh, h) : crease[h];
     }
     const PerTriangle<Index> patch = find_patches(surface, bevels->crease, bend, least_patch);
-    for (const PerHalfedge<char>& darts : {PerHalfedge<char>(), find_darts(mesh, bevels->crease)}) {
-      out.emplace(surface, patch, *bevels, darts);
-      if (!meet_others(mesh, bevels->crease, bend, options.angle)) break;
-      if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
+    if (meet_others(mesh, bevels->crease, bend, options.angle)) {
+      for (const bool with_darts : {false, true}) {
+        const PerHalfedge<char> darts = with_darts ? find_darts(mesh, bevels->crease) : PerHalfedge<char>();
+        out.emplace(surface, patch, *bevels, darts);
+        if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
+      }
     }
   }
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;

@@ -97,14 +97,14 @@ MergedCells merge(const IslandCells& cells, const Array<Sides>& sides) {
 }  // namespace
 
 Support::Support(const Array<Complex>& points) : Support() {
-  static const std::array<Complex, 4 * turns> directions = [] {
+  static const std::array<Complex, 4 * turns> unit = [] {
     std::array<Complex, 4 * turns> out;
     for (int i = 0; i < 4 * turns; ++i) out[i] = std::polar(1.0, M_PI / 2 * i / turns);
     return out;
   }();
   for (const Complex point : points) {
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      const double along = point.real() * directions[i].real() + point.imag() * directions[i].imag();
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+      const double along = point.real() * unit[i].real() + point.imag() * unit[i].imag();
       along_[i] = std::max(along_[i], along);
     }
   }

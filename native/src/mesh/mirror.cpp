@@ -154,9 +154,9 @@ class MirroredSurface {
 
   template <typename Test>
   bool is_likely(Test is_matched) const {
-    double unmatched = (1 - likely_matched) * static_cast<double>(samples_.size());
-    return std::all_of(samples_.begin(), samples_.end(),
-                       [&](Index v) { return is_matched(v) || (unmatched -= 1) >= 0; });
+    const double least = likely_matched * static_cast<double>(samples_.size());
+    Index left = ssize(samples_) - static_cast<Index>(std::ceil(least));
+    return std::all_of(samples_.begin(), samples_.end(), [&](Index v) { return is_matched(v) || left-- > 0; });
   }
 
   bool are_alike(Index a, Index b) const {

@@ -31,7 +31,7 @@ constexpr double most_growth = 4;
 // as of strips along the diagonal. Unfolded boxes fill more.
 constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long smaller squares are looked for at each effort, or better orders where bodies may not overlap at first, in
-// about nanoseconds: `good` where twice as much fills half a hundredth more of the square.
+// about nanoseconds: `good`: as long as doubling it fills .005 more of the square.
 constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
 // Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken.
 constexpr double whole_work_from = 4;

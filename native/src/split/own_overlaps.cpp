@@ -2,7 +2,6 @@
 #include "split/own_overlaps.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>

@@ -2,9 +2,12 @@
 #include "unwrap/coarse_first.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "unwrap/progress_share.hpp"
 #include "unwrap/simplified_surface.hpp"
@@ -17,7 +20,8 @@ namespace {
 // to 0.2 hundredths more than maps chosen on all, with noise of 15 % of an edge up to 0.8. Surfaces of 40,000 and
 // 90,000 triangles take 0.7 of the time.
 constexpr Index few = 10000, least_large = 30000;
-constexpr double choosing = 0.3;  // of the time, on few triangles
+constexpr Index least_reduction = 3;  // where thinning stops earlier, it saves too little
+constexpr double choosing = 0.3;      // of the time, on few triangles
 
 }  // namespace
 
@@ -32,10 +36,15 @@ bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, co
 
 Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double target, const ChooseMap& choose,
                        Objective& objective, const Progress& progress) {
-  const SimplifiedSurface simplified(surface, joined(ends.creases.required, ends.creases.possible), few);
+  const Progress thinning = share_of(progress, 0, 0);
+  const SimplifiedSurface simplified = [&] {
+    StageSeconds seconds;
+    const ProgressMonitor monitor(thinning, seconds);
+    return SimplifiedSurface(surface, joined(ends.creases.required, ends.creases.possible), few);
+  }();
   const auto count = static_cast<Index>(simplified.surface().triangles.rows());
   const auto chosen_on_whole = [&](const Progress& share) { return choose(surface, ends, objective, share); };
-  if (least_large / few * count > surface.triangles.rows()) return chosen_on_whole(progress);
+  if (least_reduction * count > surface.triangles.rows()) return chosen_on_whole(progress);
   std::optional<Quality> expected, found;  // with what is chosen on few triangles, there and on all
   const auto chosen_on_few = [&](const Progress& share) {
     EndsInMap own;

@@ -26,8 +26,8 @@ bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, co
                              const MapOptions& options);
 
 // The map with the cones, borders and divisions that are best on few triangles. Where it leaves out triangles, has
-// further defects, or misses the target although the simplified one reaches it, the map is chosen on the whole surface
-// as well, and the better one is taken.
+// further defects, or is stretched by more than both the target and the simplified one, the map is chosen on the whole
+// surface as well, unless it is expected to cost more, and the better one is taken.
 // target: of cones, an L2 stretch.  Throws what `choose` throws.
 Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double target, const ChooseMap& choose,
                        Objective& objective, const Progress& progress);

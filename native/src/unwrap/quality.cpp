@@ -61,8 +61,8 @@ double filled_boxes(const Result& result) {
   return room > 0 ? area_of(result, result.corner_uv) / room : 1;
 }
 
-// The share of the area that is in tubes of components with cones, and in tubes that seams open and that may be as bent
-// as these are.
+// The share of the area that is in tubes of components with cones, and in tubes opened by seams, unless they were laid
+// out as strips.
 double bent_tubes(const MadeMap& made) {
   const BorderedSurface& surface = *made.surface;
   const Result& result = made.result;
@@ -73,7 +73,7 @@ double bent_tubes(const MadeMap& made) {
   PerVertex<char> is_cone(parts.surface().positions.rows(), 0);
   for (const Index v : result.cones) is_cone[v] = 1;
   PerComponent<char> is_bent(parts.count(), 0);
-  if (made.options.of_map.border != BorderMode::strips) is_bent = with_seams(parts);
+  if (made.options.of_map.border != BorderMode::strips) is_bent = have_seams(parts);
   for (Index f = 0; f < count; ++f) {
     const auto corners = parts.surface().triangles.row(f);
     const bool has_cone = is_cone[corners[0]] || is_cone[corners[1]] || is_cone[corners[2]];

@@ -96,7 +96,7 @@ PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs
   return out;
 }
 
-PerComponent<char> with_seams(const SurfaceParts& parts) {
+PerComponent<char> have_seams(const SurfaceParts& parts) {
   const VertexPairs& seams = parts.surface().seams;
   PerComponent<char> out(parts.count(), 0);
   for (Index e = 0; e < seams.rows(); ++e) {

@@ -58,7 +58,7 @@ PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& ed
 PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs& cuts);
 
 // Whether each has marked seams.
-PerComponent<char> with_seams(const SurfaceParts& parts);
+PerComponent<char> have_seams(const SurfaceParts& parts);
 
 // How many of the vertices, triangles, islands and defects each component has.
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices);

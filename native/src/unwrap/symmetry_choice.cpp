@@ -184,7 +184,7 @@ std::optional<double> SymmetryChoice::expected_of_others(Kind kind, double asymm
 }
 
 // Whether a map could cost less than one that is made if all went well: with no stretch, cuts or cones, and as few
-// islands as there are components. Of maps without any of these all are alike.
+// islands as there are components. Maps without any of these cost the same.
 bool SymmetryChoice::may_cost_less(const MadeCandidate& made, Quality other) const {
   if (made.quality.left_out > 0 || made.quality.defects > 0) return true;
   other.islands = std::min<double>(made.quality.islands, surface_.parts.count());

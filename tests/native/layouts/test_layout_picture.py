@@ -101,7 +101,7 @@ def test_both_sides_of_every_cut_have_its_color(mesh: Mesh) -> None:
             seen[number] += is_close(drawn.at(middle), color_of(number), 30)
     assert sum(seen.values()) > 0.95 * sides > 10
     # Of a cut of one edge, one of the two sides may lie under the color of another cut.
-    assert min(seen.values()) >= 1
+    assert all(count >= min(2, len(result.cut_paths[number]) - 1) for number, count in seen.items())
 
 
 def test_cones_are_colored_by_curvature_at_all_their_places() -> None:
