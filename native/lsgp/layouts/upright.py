@@ -94,8 +94,8 @@ def _turned_square(uv: FloatArray, quarters: int) -> FloatArray:
 
 
 def _outlines(uv: FloatArray, island: IndexArray, count: int) -> list[FloatArray]:
-    """Of each island the sides of triangles, (s, 2, 2), counter-clockwise around them, beyond which it has no other: once
-    for each triangle more on its left than on its right."""
+    """Of each island the sides of triangles, (s, 2, 2), counter-clockwise around them, beyond which it has no other:
+    once for each triangle more on its left than on its right."""
     numbers = np.repeat(island, 3)
     first, second = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     is_flipped = first[:, 0] * second[:, 1] < first[:, 1] * second[:, 0]
