@@ -545,7 +545,6 @@ REVIEWED = {
         ("while (!open.empty())", "parts of a polygon, each divided at a corner", OWN),
     ],
     "packing/separation.cpp": [
-        ("for (int x = left; x < right; x += BitRows::word_bits)", "words of a row", SHORT),
         ("for (int step = first_step; step > 0;)", "halved unless the cost gets lower, over places in a raster", SHORT),
         (
             "for (int tried = 0, first = uniform_below(random, count); !fits(pose); ++tried)",
