@@ -155,7 +155,7 @@ class MirroredSurface {
   template <typename Test>
   bool is_likely(Test is_matched) const {
     const double least = likely_matched * static_cast<double>(samples_.size());
-    Index left = ssize(samples_) - static_cast<Index>(std::ceil(least));
+    std::ptrdiff_t left = ssize(samples_) - static_cast<std::ptrdiff_t>(std::ceil(least));
     return std::all_of(samples_.begin(), samples_.end(), [&](Index v) { return is_matched(v) || left-- > 0; });
   }
 
