@@ -66,7 +66,8 @@ struct Chooser {
 
 Made chosen(const Surface& surface, Chooser& chooser) {
   Objective objective(preset_weights(Preset::paint), {});
-  return best_coarse_first(surface, {}, 1.05, std::ref(chooser), objective, {});
+  const EndsInMap nowhere;
+  return best_coarse_first({surface, nowhere, 1.05}, std::ref(chooser), objective, {});
 }
 
 }  // namespace

@@ -150,8 +150,8 @@ TEST_CASE("texels that two rasters share at any place are those counted one by o
     }
     const BitColumns a(rows[0]), b(rows[1]);
     std::ptrdiff_t words = 0;
-    CHECK(shared_bits(a, b, right, up, 1 << 20, words) == expected);
-    if (expected > 0) CHECK(shared_bits(a, b, right, up, expected - 1, words) > expected - 1);
+    CHECK(shared_bits(a, b, {right, up}, 1 << 20, words) == expected);
+    if (expected > 0) CHECK(shared_bits(a, b, {right, up}, expected - 1, words) > expected - 1);
   }
 }
 

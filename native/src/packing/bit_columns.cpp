@@ -41,7 +41,8 @@ BitColumns::BitColumns(const BitRows& rows)
   }
 }
 
-int shared_bits(const BitColumns& a, const BitColumns& b, int right, int up, int most, std::ptrdiff_t& words) {
+int shared_bits(const BitColumns& a, const BitColumns& b, TexelShift shift, int most, std::ptrdiff_t& words) {
+  const auto [right, up] = shift;
   const int first = std::max(floor_divided(right, BitColumns::word_bits), 0);
   const int end = std::min(floor_divided(right + b.columns() - 1, BitColumns::word_bits) + 1, a.words());
   const int top = std::min(a.rows(), up + b.rows());

@@ -28,8 +28,12 @@ class BitColumns {
   Array<Word> bits_;
 };
 
-// The number of texels that are set in both, or more than `most` if that is less.  right, up: by how many texels the
-// second lies further.  words: the pairs of words that were compared are added.
-int shared_bits(const BitColumns& a, const BitColumns& b, int right, int up, int most, std::ptrdiff_t& words);
+struct TexelShift {
+  int right, up;
+};
+
+// The number of texels that are set in both, or more than `most` if that is less.  shift: by which the second lies
+// further.  words: the pairs of words that were compared are added.
+int shared_bits(const BitColumns& a, const BitColumns& b, TexelShift shift, int most, std::ptrdiff_t& words);
 
 }  // namespace lsgp

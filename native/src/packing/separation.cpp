@@ -51,7 +51,7 @@ int Separation::overlap(Index a, const Place& at_a, Index b, const Place& at_b, 
   const BitColumns& own = texels(a, at_a.pose).own;
   const BitColumns& widened = texels(b, at_b.pose).widened;
   std::ptrdiff_t words = 0;
-  const int count = shared_bits(own, widened, at_b.column - reach_ - at_a.column, at_b.row - reach_ - at_a.row,
+  const int count = shared_bits(own, widened, {at_b.column - reach_ - at_a.column, at_b.row - reach_ - at_a.row},
                                 static_cast<int>(std::min(most, 1e9)), words);
   work_ += cost_of_overlap + cost_of_word_pair * static_cast<double>(words);
   return count;

@@ -107,7 +107,7 @@ class PieceHalver {
     const Array<Index> order = by_distance(by_distance(piece.front(), piece).back(), piece);
     std::size_t total = 0;
     for (const Index face : piece) total += triangles_[face].size();
-    const auto quarter = [&](auto begin, auto end) {
+    const auto quarter = [&](const auto& begin, const auto& end) {
       Array<Index> out{*begin};
       std::size_t count = triangles_[*begin].size();
       for (auto at = begin + 1; at != end; ++at) {

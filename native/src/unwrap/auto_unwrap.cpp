@@ -142,7 +142,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
       };
       return best_of_tubes(on, {its_ends.creases, its_ends.tubes}, make, by, of_maps_alone);
     };
-    const Made usual = best_for_strokes(on, of_map, mapped, share);
+    Made usual = best_for_strokes(on, of_map, mapped, share);
     if (is_pinned) return usual;
     // What is cut apart on few triangles has no counterpart on all of them.
     const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && &on == &surface;
@@ -151,7 +151,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   };
   const Made best = best_in_time(limit, objective, of_map, [&] {
     const bool may_be_simplified = is_kept_when_simplified(surface, given, ends, of_map) && !is_pinned;
-    return may_be_simplified ? best_coarse_first(surface, ends, options.target, choose, objective, of_maps)
+    return may_be_simplified ? best_coarse_first({surface, ends, options.target}, choose, objective, of_maps)
                              : choose(surface, ends, objective, of_maps);
   });
 

@@ -34,8 +34,10 @@ bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, co
          options.of_map.loop_turning.empty();
 }
 
-Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double target, const ChooseMap& choose,
-                       Objective& objective, const Progress& progress) {
+Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objective& objective,
+                       const Progress& progress) {
+  const Surface& surface = large.surface;
+  const EndsInMap& ends = large.ends;
   const Progress thinning = share_of(progress, 0, 0);
   const SimplifiedSurface simplified = [&] {
     StageSeconds seconds;
@@ -68,7 +70,7 @@ Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double tar
     if (!found) found = quality;
     return quality;
   };
-  const double most_stretch = 100 * (target - 1);
+  const double most_stretch = 100 * (large.target - 1);
   const auto expected_of_whole = [&]() -> std::optional<double> {
     if (!found || !expected) return Objective::infinity;
     const bool has_defects = found->left_out > 0 || found->defects > expected->defects;

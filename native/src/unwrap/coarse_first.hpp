@@ -25,11 +25,17 @@ using ChooseMap = std::function<Made(const Surface&, const EndsInMap&, Objective
 bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, const EndsInMap& ends,
                              const MapOptions& options);
 
+// A surface with many triangles.
+struct LargeSurface {
+  const Surface& surface;
+  const EndsInMap& ends;
+  double target;  // of cones, an L2 stretch
+};
+
 // The map with the cones, borders and divisions that are best on few triangles. Where it leaves out triangles, has
 // further defects, or is stretched by more than both the target and the simplified one, the map is chosen on the whole
-// surface as well, unless it is expected to cost more, and the better one is taken.
-// target: of cones, an L2 stretch.  Throws what `choose` throws.
-Made best_coarse_first(const Surface& surface, const EndsInMap& ends, double target, const ChooseMap& choose,
-                       Objective& objective, const Progress& progress);
+// surface as well, unless it is expected to cost more, and the better one is taken.  Throws what `choose` throws.
+Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objective& objective,
+                       const Progress& progress);
 
 }  // namespace lsgp
