@@ -62,3 +62,11 @@ TEST_CASE("boxes that share a point alone meet") {
   });
   CHECK(visits == 1);
 }
+
+TEST_CASE("a box around nothing meets none") {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  const lsgp::Array<lsgp::Box> boxes{{far, -far, far, -far}, {0, 2, 0, 2}, {1, 3, 1, 3}};
+  Pairs found;
+  lsgp::AabbTree(boxes).for_each_meeting_pair([&](lsgp::Index i, lsgp::Index j) { found.emplace(i, j); });
+  CHECK(found == Pairs{{1, 2}});
+}

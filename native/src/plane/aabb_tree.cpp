@@ -44,8 +44,9 @@ AabbTree::AabbTree(const Array<Box>& boxes) {
   for (const Box& box : boxes) all = around(all, box);
   const auto steps = [](double value, double low, double high) {
     constexpr double most = 4294967295.0;
-    const double span = high / 2 - low / 2;  // which is finite, whatever they are
-    return span > 0 ? static_cast<std::uint64_t>((value / 2 - low / 2) / span * most) : 0;
+    const double span = high / 2 - low / 2;             // which is finite, whatever they are
+    const double share = (value / 2 - low / 2) / span;  // no number for boxes around nothing
+    return span > 0 && share > 0 ? static_cast<std::uint64_t>(std::min(share, 1.0) * most) : 0;
   };
   Array<Place> places(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
