@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plane/aabb_tree.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
