@@ -28,7 +28,12 @@ Tubes find_tubes(const Surface& surface, const std::vector<Index>& cones, const 
     const bool is_marked = task.is_marked(component.mesh);
     if (is_marked && (!component.mesh.is_disk() || task.is_marked_inside(component.mesh))) return;
     const Geometry geometry = require_geometry(component, findings);
-    if (is_marked && !girths_of_opened_tube({component.mesh, geometry})) return;
+    if (is_marked) {
+      // All of it is a tube, which has no further ends, or nothing.
+      if (girths_of_opened_tube({component.mesh, geometry}))
+        out.triangles.insert(out.triangles.end(), component.source_triangle.begin(), component.source_triangle.end());
+      return;
+    }
     const ComponentTubes tubes = find_component_tubes({component.mesh, geometry});
     append_ends(component, tubes.is_end, borders);
     for (const Index f : tubes.triangles) out.triangles.push_back(component.source_triangle[f]);

@@ -41,15 +41,15 @@ PerHalfedge<char> fixed_edges(const Surface& surface, const EdgeTable& edges, co
 // The smaller surface with the cones among its vertices, as one of its own.
 class ConedSurface {
  public:
-  // without_cones: the smaller surface.  place: of vertices on it.
-  ConedSurface(RefinedSurface without_cones, const PerVertex<SurfacePlace>& place, const Array<Index>& vertex_of_node,
-               const PerVertex<Index>& node, const std::vector<Index>& cones)
-      : refined(std::move(without_cones)), vertex_of_node_(vertex_of_node), node_(node) {
+  // without_cones: the smaller surface.  place: of vertices on it.  left: its own ones.
+  ConedSurface(RefinedSurface without_cones, const PerVertex<SurfacePlace>& place, VerticesLeft left,
+               const std::vector<Index>& cones)
+      : refined(std::move(without_cones)), nodes_(std::move(left)) {
     for (const Index v : cones) {
-      if (node_[v] != none) continue;
+      if (nodes_.number[v] != none) continue;
       refined.add(v, place[v]);
-      node_[v] = node_count();
-      vertex_of_node_.push_back(v);
+      nodes_.number[v] = node_count();
+      nodes_.vertex.push_back(v);
     }
     for (Index f = 0; f < refined.triangle_count(); ++f) {
       if (!refined.is_replaced(f)) triangle_of_row_.push_back(f);
@@ -60,21 +60,20 @@ class ConedSurface {
     Triangles out(ssize(triangle_of_row_), 3);
     for (Index row = 0; row < out.rows(); ++row) {
       const auto& corners = refined.triangle(triangle_of_row_[row]);
-      for (int c = 0; c < 3; ++c) out(row, c) = node_[corners[static_cast<std::size_t>(c)]];
+      for (int c = 0; c < 3; ++c) out(row, c) = nodes_.number[corners[static_cast<std::size_t>(c)]];
     }
     return out;
   }
 
-  Index vertex_of(Index node) const { return vertex_of_node_[node]; }
-  Index node_count() const { return static_cast<Index>(vertex_of_node_.size()); }
-  Index node(Index vertex) const { return node_[vertex]; }
+  Index vertex_of(Index node) const { return nodes_.vertex[node]; }
+  Index node_count() const { return static_cast<Index>(nodes_.vertex.size()); }
+  Index node(Index vertex) const { return nodes_.number[vertex]; }
   const Array<Index>& triangle_of_row() const { return triangle_of_row_; }
 
   RefinedSurface refined;
 
  private:
-  Array<Index> vertex_of_node_;   // cones that were added come last
-  PerVertex<Index> node_;         // none of vertices that are not there
+  VerticesLeft nodes_;            // cones that were added come last
   Array<Index> triangle_of_row_;  // of `refined`
 };
 
@@ -94,8 +93,7 @@ struct Preview::Kept {
   PerHalfedge<char> fixed;  // of the thinned triangles
   Eigen::VectorXd cost;     // (n) of cuts, or empty
   Positions directions;     // of the thinned triangles, or empty
-  PerVertex<Index> node;    // the number of each vertex among those that are left, or none
-  Array<Index> vertex_of_node;
+  VerticesLeft left;
 };
 
 Preview::Kept::Kept(Surface given, Index triangles) : surface(std::move(given)) {
@@ -107,20 +105,10 @@ Preview::Kept::Kept(Surface given, Index triangles) : surface(std::move(given)) 
   if (surface.directions.rows() > 0) {
     directions = Positions::Zero(thinned.triangles.rows(), 3);
     for (Index f = 0; f < surface.directions.rows(); ++f) {
-      const Index* const corners = surface.triangles.row(f).data();
-      const auto is_gone = [&](Index v) { return thinned.place[v].corner() == none; };
-      const Index* const gone = std::find_if(corners, corners + 3, is_gone);
-      const Index at = gone == corners + 3 ? thinned.kept[f] : thinned.place[*gone].triangle;
-      directions.row(at) += surface.directions.row(f);
+      directions.row(triangle_left(surface.triangles, thinned, f)) += surface.directions.row(f);
     }
   }
-  node.assign(surface.positions.rows(), none);
-  for (Index h = 0; h < thinned.triangles.size(); ++h) node[thinned.triangles.data()[h]] = 0;
-  for (Index v = 0; v < ssize(node); ++v) {
-    if (node[v] == none) continue;
-    node[v] = static_cast<Index>(vertex_of_node.size());
-    vertex_of_node.push_back(v);
-  }
+  left = vertices_left(thinned);
 }
 
 namespace {
@@ -230,8 +218,8 @@ Result Preview::parameterize(const Cones& cones, const Options& options, const P
     return lsgp::parameterize(kept_->surface, cones, options, {}, progress);
   }
   require_valid(kept_->surface, cones);
-  const ConedSurface coned({thinned, kept_->surface.positions, kept_->fixed}, thinned.place, kept_->vertex_of_node,
-                           kept_->node, cones.vertices);
+  const ConedSurface coned({thinned, kept_->surface.positions, kept_->fixed}, thinned.place, kept_->left,
+                           cones.vertices);
   Cones of_nodes = cones;
   for (Index& v : of_nodes.vertices) v = coned.node(v);
   const Surface small = kept_->smaller(coned);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -38,8 +37,8 @@ constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12;
 constexpr int most_lines = 2;
-constexpr double operations_a_cell = 300;  // of finding how far pieces reach
-constexpr double same_line = 1e-6;         // of normals, and of offsets relative to the extent
+constexpr double operations_a_cell = 8 * Support::turns;  // comparing and keeping how far it reaches
+constexpr double same_line = 1e-6;                        // of normals, and of offsets relative to the extent
 
 // Adds the mirror images of lines that are not among them.
 void add_images(const Line& axis, double extent, Array<Line>& lines) {
@@ -55,8 +54,7 @@ void add_images(const Line& axis, double extent, Array<Line>& lines) {
   }
 }
 
-// On which sides of all lines that are tried together a cell lies, one bit each.
-using Sides = std::uint32_t;
+using Sides = DivisionSearch::Sides;
 static_assert(most_lines * division_positions <= std::numeric_limits<Sides>::digits);
 
 struct MergedCells {
@@ -154,39 +152,21 @@ double DivisionSearch::worth(double gain, double length, std::size_t pieces) con
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 
-double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, const WholeIsland& island) const {
-  UnionFind sets(cells.count());
+double DivisionSearch::worth(const IslandCells& cells, const Array<Sides>& sides, const WholeIsland& island) const {
+  const IslandCells merged = merge(cells, sides).cells;
+  const Index count = merged.count();
+  if (count < 2 || count > most_pieces) return 0;
+  Array<Piece> pieces(count);
+  for (Index i = 0; i < count; ++i) pieces[i] = {merged.area[i], merged.map_area[i], merged.faces[i]};
   double length = 0;
-  for (const IslandCells::Link& link : cells.links) {
-    if (class_of[link.cells[0]] == class_of[link.cells[1]])
-      sets.unite(link.cells[0], link.cells[1]);
-    else
-      length += link.length;
-  }
-  Array<Index> number(cells.count(), none);
-  Array<Piece> pieces;
-  for (Index cell = 0; cell < cells.count(); ++cell) {
-    const Index root = sets.find(cell);
-    if (root == cell) {
-      number[cell] = static_cast<Index>(pieces.size());
-      pieces.emplace_back();
-    }
-    number[cell] = number[root];
-    pieces[number[cell]].area += cells.area[cell];
-    pieces[number[cell]].map_area += cells.map_area[cell];
-    pieces[number[cell]].faces += cells.faces[cell];
-  }
-  if (pieces.size() < 2 || static_cast<Index>(pieces.size()) > most_pieces) return 0;
-  for (const IslandCells::Link& link : cells.links) {
-    const Index here = number[link.cells[0]], there = number[link.cells[1]];
-    if (here != there && link.is_smooth) pieces[here].ends_smoothly = pieces[there].ends_smoothly = true;
+  for (const IslandCells::Link& link : merged.links) {
+    length += link.length;
+    if (link.is_smooth) pieces[link.cells[0]].ends_smoothly = pieces[link.cells[1]].ends_smoothly = true;
   }
   const auto may_be = [&](const Piece& piece) { return may_be_cut_off(piece, island); };
   if (!std::all_of(pieces.begin(), pieces.end(), may_be)) return 0;
-  Array<Support> support(pieces.size());
-  for (Index cell = 0; cell < cells.count(); ++cell) support[number[cell]].add(cells.support[cell]);
   double after = 0;
-  for (const Support& piece : support) after += demand(piece);
+  for (const Support& piece : merged.support) after += demand(piece);
   return worth(island.demand - after, length, pieces.size());
 }
 
@@ -210,11 +190,11 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Who
       }
     }
     const MergedCells merged = merge(cells, sides);
-    Array<Index> class_of(merged.cells.count());
+    Array<Sides> own(merged.cells.count());
     for (std::size_t i = 0; i < divisions.size(); ++i) {
       for (Index cell = 0; cell < merged.cells.count(); ++cell)
-        class_of[cell] = static_cast<Index>(merged.sides[cell] >> (most_lines * i) & ((1 << most_lines) - 1));
-      const double gain = worth(merged.cells, class_of, island);
+        own[cell] = merged.sides[cell] >> (most_lines * i) & ((1 << most_lines) - 1);
+      const double gain = worth(merged.cells, own, island);
       if (gain > best.worth) best = {std::move(divisions[i]), gain};
     }
     checkpoint(operations_a_cell * static_cast<double>(cells.count()));

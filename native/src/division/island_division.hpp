@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <complex>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -98,6 +99,9 @@ struct Piece {
 // Weighs the area of the square that divisions save against their cost.
 class DivisionSearch {
  public:
+  // On which sides of all lines that are tried together a cell lies, one bit each.
+  using Sides = std::uint32_t;
+
   explicit DivisionSearch(const SharedSquare& square);
 
   // An island of this area, its unevenness left out.
@@ -123,7 +127,7 @@ class DivisionSearch {
                                Complex along, const std::optional<Line>& axis) const;
 
  private:
-  double worth(const IslandCells& cells, const Array<Index>& class_of, const WholeIsland& island) const;
+  double worth(const IslandCells& cells, const Array<Sides>& sides, const WholeIsland& island) const;
 
   const double area_, price_factor_;
 };

@@ -389,6 +389,24 @@ PerTriangle<Index> find_polygons(const Surface& surface, const EdgeTable& edges)
 
 }  // namespace
 
+VerticesLeft vertices_left(const ThinnedSurface& thinned) {
+  VerticesLeft out{PerVertex<Index>(thinned.place.size(), none), {}};
+  for (const Index v : thinned.triangles.reshaped()) out.number[v] = 0;
+  for (Index v = 0; v < ssize(out.number); ++v) {
+    if (out.number[v] == none) continue;
+    out.number[v] = static_cast<Index>(out.vertex.size());
+    out.vertex.push_back(v);
+  }
+  return out;
+}
+
+Index triangle_left(const Triangles& whole, const ThinnedSurface& thinned, Index f) {
+  const Index* const corners = whole.row(f).data();
+  const auto is_gone = [&](Index v) { return thinned.place[v].corner() == none; };
+  const Index* const gone = std::find_if(corners, corners + 3, is_gone);
+  return gone == corners + 3 ? thinned.kept[f] : thinned.place[*gone].triangle;
+}
+
 ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, const PerHalfedge<Index>& twin, Index triangles) {
   require_memory(bytes_a_corner * 3 * static_cast<double>(surface.triangles.rows()));
   Thinning thinning(surface, twin);

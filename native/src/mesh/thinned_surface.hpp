@@ -27,6 +27,16 @@ struct ThinnedSurface {
   PerTriangle<Index> polygon;
 };
 
+// The vertices that are left, in their order.
+struct VerticesLeft {
+  PerVertex<Index> number;  // none of those that are gone
+  Array<Index> vertex;      // of each number
+};
+VerticesLeft vertices_left(const ThinnedSurface& thinned);
+
+// Which of the triangles that are left a triangle of the whole surface is, or about where it was.
+Index triangle_left(const Triangles& whole, const ThinnedSurface& thinned, Index f);
+
 // Removes vertices in the interior and retriangulates the holes, until about so many triangles are left; more if the
 // others cannot be removed.  Boundaries, seams, borders and features stay as they are, and so do vertices and edges
 // where the surface is not an oriented manifold.  The places follow flattened rings (Lee et al. 1998), so that the

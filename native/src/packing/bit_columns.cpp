@@ -9,21 +9,17 @@ namespace {
 
 using Word = BitColumns::Word;
 
-// The sums of eight bits fit into bytes for so many words.
-constexpr int most_words = 31;
+// The bits set of eight fit into a byte for so many words.
+constexpr int most_words = 255 / 8;
 
 int floor_divided(int number, int by) { return number >= 0 ? number / by : -((by - 1 - number) / by); }
 
 // The bits that are set both in `a` and in the words that begin `shift` bits into `low`, of at most `most_words` words.
 int shared_bits_of_words(const Word* a, const Word* low, const Word* high, int shift, int count) {
-  constexpr Word twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f,
-                 even_bytes = 0x00ff00ff00ff00ff, ones = 0x0001000100010001;
+  constexpr Word even_bytes = 0x00ff00ff00ff00ff, ones = 0x0001000100010001;
   Word sums = 0;
   for (int i = 0; i < count; ++i) {
-    Word word = a[i] & (low[i] >> shift | high[i] << 1 << (BitColumns::word_bits - 1 - shift));
-    word -= word >> 1 & twos;
-    word = (word & fours) + (word >> 2 & fours);
-    sums += (word + (word >> 4)) & bytes;
+    sums += bits_of_bytes(a[i] & (low[i] >> shift | high[i] << 1 << (BitColumns::word_bits - 1 - shift)));
   }
   sums = (sums & even_bytes) + (sums >> 8 & even_bytes);
   return static_cast<int>(sums * ones >> 48);

@@ -10,15 +10,18 @@
 
 namespace lsgp {
 
-// Pairs, fours and bytes of bits added up: what all processors have, and as fast as their instruction if most words are
-// 0.
-inline int bit_count(std::uint64_t word) {
-  constexpr std::uint64_t twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f,
-                          ones = 0x0101010101010101;
-  if (word == 0) return 0;
+// How many bits are set of each eight, in as many bytes: pairs and fours of bits added up.
+inline std::uint64_t bits_of_bytes(std::uint64_t word) {
+  constexpr std::uint64_t twos = 0x5555555555555555, fours = 0x3333333333333333, bytes = 0x0f0f0f0f0f0f0f0f;
   word -= word >> 1 & twos;
   word = (word & fours) + (word >> 2 & fours);
-  return static_cast<int>(((word + (word >> 4)) & bytes) * ones >> 56);
+  return (word + (word >> 4)) & bytes;
+}
+
+// What all processors have, and as fast as their instruction if most words are 0.
+inline int bit_count(std::uint64_t word) {
+  constexpr std::uint64_t ones = 0x0101010101010101;
+  return word == 0 ? 0 : static_cast<int>(bits_of_bytes(word) * ones >> 56);
 }
 
 // The number of the first bit that is set; 64: none is.

@@ -33,7 +33,8 @@ constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long smaller squares are looked for at each effort, or better orders where bodies may not overlap at first, in
 // about nanoseconds: `good`: as long as doubling it fills .005 more of the square.
 constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
-// Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken.
+// Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken. Islands of Bake
+// fill .644 of the square, and .637 if only ten and more get all of it.
 constexpr double whole_work_from = 4;
 constexpr std::size_t most_quick = 32;
 // Of more bodies, overlaps of pairs are not looked at.

@@ -29,8 +29,7 @@ class SimplifiedSurface {
   Eigen::VectorXd on_whole(const Eigen::VectorXd& at_vertices) const;
 
   ThinnedSurface thinned_;
-  PerVertex<Index> node_;  // of the whole surface, none of those that are gone
-  PerVertex<Index> vertex_of_node_;
+  VerticesLeft left_;
   PerTriangle<Index> triangle_of_whole_;  // about where each triangle of the whole surface is
   Surface surface_;
 };

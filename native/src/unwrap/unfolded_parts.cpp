@@ -2,11 +2,12 @@
 #include "unwrap/unfolded_parts.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "base/union_find.hpp"
-#include "mesh/topology.hpp"
+#include "mesh/edge_table.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/thinned_surface.hpp"
 #include "unwrap/edge_set.hpp"
 
 namespace lsgp {
@@ -23,37 +24,6 @@ PerComponent<char> are_left_out(const SurfaceParts& parts, const Result& result)
   return out;
 }
 
-// A side of a triangle, and its edge's vertices in order.
-struct Side {
-  Index low, high, triangle;
-  bool is_upward;  // from the low to the high one
-
-  friend bool operator<(const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle, a.is_upward) < std::tie(b.low, b.high, b.triangle, b.is_upward);
-  }
-};
-
-Array<Side> sides_on(const SurfaceParts& parts, const PerComponent<char>& is_chosen) {
-  Array<Side> out;
-  const auto& triangles = parts.surface().triangles;
-  for (Index f = 0; f < triangles.rows(); ++f) {
-    const Index part = parts.of_triangle()[f];
-    if (part == none || !is_chosen[part]) continue;
-    for (Index k = 0; k < 3; ++k) {
-      const Index a = triangles(f, k), b = triangles(f, (k + 1) % 3);
-      out.push_back({std::min(a, b), std::max(a, b), f, a < b});
-    }
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-Eigen::RowVector3d normal_of(const Surface& surface, Index f) {
-  const auto corner = [&](Index k) { return surface.positions.row(surface.triangles(f, k)); };
-  const Eigen::RowVector3d a = corner(1) - corner(0), b = corner(2) - corner(0);
-  return a.cross(b).stableNormalized();
-}
-
 // Edges of the chosen components of which the others join their triangles to trees. Where cuts may not run, triangles
 // stay joined.
 VertexPairs edges_off_trees(const SurfaceParts& parts, const PerComponent<char>& is_chosen) {
@@ -64,21 +34,29 @@ VertexPairs edges_off_trees(const SurfaceParts& parts, const PerComponent<char>&
   constexpr double uncuttable = 2;
   const Surface& surface = parts.surface();
   const EdgeSet cuttable(surface.edges ? *surface.edges : VertexPairs());
-  const Array<Side> sides = sides_on(parts, is_chosen);
+  PerTriangle<char> is_other(surface.triangles.rows(), 0);
+  for (std::size_t f = 0; f < is_other.size(); ++f) {
+    const Index part = parts.of_triangle()[f];
+    is_other[f] = part == none || !is_chosen[part];
+  }
+  const EdgeTable edges(surface, is_other);
+  const PerHalfedge<Index> twin = find_twins(surface, edges);
+  const auto normal = [&](Index f) -> Eigen::Vector3d {
+    return area_normal(surface.positions, surface.triangles, f).stableNormalized();
+  };
   Array<Link> links;
   Array<std::pair<Index, Index>> ends;
-  for (std::size_t first = 0, next = 0; first < sides.size(); first = next) {
-    const Side& side = sides[first];
-    const auto is_same = [&](const Side& of) { return of.low == side.low && of.high == side.high; };
-    while (next < sides.size() && is_same(sides[next])) ++next;
-    if (next - first == 2 && side.is_upward != sides[first + 1].is_upward) {
-      const Index other = sides[first + 1].triangle;
-      const bool may_be_cut = !surface.edges || cuttable.has(side.low, side.high);
-      const double bend = normal_of(surface, side.triangle).dot(normal_of(surface, other));
-      links.push_back({may_be_cut ? bend : uncuttable, side.low, side.high, side.triangle, other});
-    } else if (next - first > 1) {
-      ends.emplace_back(side.low, side.high);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) < 2) continue;
+    const Index h = edges.halfedge(edge, 0), other = twin[h];
+    const auto [low, high] = std::minmax({surface.triangles(h / 3, h % 3), surface.triangles(h / 3, (h % 3 + 1) % 3)});
+    if (other == none) {
+      ends.emplace_back(low, high);
+      continue;
     }
+    const bool may_be_cut = !surface.edges || cuttable.has(low, high);
+    const double bend = normal(h / 3).dot(normal(other / 3));
+    links.push_back({may_be_cut ? bend : uncuttable, low, high, h / 3, other / 3});
   }
   std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.flatness > b.flatness; });
   UnionFind pieces(static_cast<Index>(surface.triangles.rows()));
