@@ -48,14 +48,6 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "unwrap/unfolded_parts.cpp": [
-        (
-            "for (std::size_t first = 0, next = 0; first < sides.size(); first = next)",
-            "passes a side each time",
-            SHORT,
-        ),
-        ("while (next < sides.size() && is_same(sides[next]))", "passes a side each time", SHORT),
-    ],
     "unwrap/objective.cpp": [
         (
             "while (const std::optional<Estimate> next = most_promising(candidates))",
