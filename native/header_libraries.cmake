@@ -77,7 +77,8 @@ function(lsgp_download_headers name target digest include)
   target_include_directories(${target} INTERFACE ${folder}/${include})
 endfunction()
 
-# Sets up the targets Eigen3::Eigen and Spectra::Spectra. The archives are those of the authors, whose bytes Debian keeps.
+# Sets up the targets Eigen3::Eigen and Spectra::Spectra. GitLab and GitHub make archives of a tag on request, whose bytes
+# may change some day; the public archive of Debian keeps those of the releases, with the digests given here.
 macro(lsgp_find_header_libraries)
   list(APPEND CMAKE_PREFIX_PATH $ENV{CMEEL_PREFIX})
   find_package(Eigen3 5 QUIET NO_MODULE)
