@@ -18,6 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct IslandBox {
   double width, height;
 };
+double area(const IslandBox& box) { return box.width * box.height; }
 
 // Orders boxes by height, the highest first; those of one height but for rounding remain in the order of their numbers.
 Array<std::size_t> by_height(const Array<IslandBox>& boxes) {
@@ -34,28 +35,29 @@ Array<std::size_t> by_height(const Array<IslandBox>& boxes) {
 // Puts boxes on shelves about as wide as all of them are high; returns the origin of each.
 struct Shelves {
   Array<Complex> place;
-  double size;  // of the square that holds them
+  double width = 0, height = 0;  // of the box that holds them
+  double size() const { return std::max(width, height); }
 };
 Shelves shelve(const Array<IslandBox>& boxes, double gap) {
   double total = 0, widest = 0;
   for (const IslandBox& box : boxes) {
-    total += box.width * box.height;
+    total += area(box);
     widest = std::max(widest, box.width);
   }
   const double shelf_width = std::max(widest, 1.05 * std::sqrt(total)) + gap;
-  Shelves out{Array<Complex>(boxes.size()), 0};
-  double x = 0, y = 0, shelf_height = 0, right = 0;
+  Shelves out{Array<Complex>(boxes.size())};
+  double x = 0, y = 0, shelf_height = 0;
   for (const std::size_t i : by_height(boxes)) {
     if (x > 0 && x + boxes[i].width > shelf_width) {
       y += shelf_height + gap;
       x = shelf_height = 0;
     }
     out.place[i] = {x, y};
-    right = std::max(right, x + boxes[i].width);
+    out.width = std::max(out.width, x + boxes[i].width);
     shelf_height = std::max(shelf_height, boxes[i].height);
     x += boxes[i].width + gap;
   }
-  out.size = std::max(right, y + shelf_height);
+  out.height = y + shelf_height;
   return out;
 }
 
@@ -69,6 +71,48 @@ Complex turn_of(const Array<Complex>& hull, std::optional<Complex> axes) {
   const Extent aligned = extent_along(hull, std::conj(*axes));
   if (area(aligned) > larger * area(extent_along(hull, side))) return std::conj(side);
   return is_wide(aligned.width(), aligned.height()) ? *axes : *axes * Complex(0, -1);
+}
+
+// Of the lattice's translations, times the step.
+struct Cell {
+  double width, height;
+};
+
+struct PartExtent {
+  Complex low{infinity, infinity}, high{-infinity, -infinity};
+  // In cells.
+  Complex first_cell{infinity, infinity}, last_cell{-infinity, -infinity};
+  bool may_lie_anywhere = false;
+
+  void add(Complex z, Complex cell) {
+    low = {std::min(low.real(), z.real()), std::min(low.imag(), z.imag())};
+    high = {std::max(high.real(), z.real()), std::max(high.imag(), z.imag())};
+    first_cell = {std::min(first_cell.real(), cell.real()), std::min(first_cell.imag(), cell.imag())};
+    last_cell = {std::max(last_cell.real(), cell.real()), std::max(last_cell.imag(), cell.imag())};
+  }
+  IslandBox box() const { return {(high - low).real(), (high - low).imag()}; }
+  IslandBox box_of_cells() const { return {(last_cell - first_cell).real() + 1, (last_cell - first_cell).imag() + 1}; }
+  bool is_scrap(const Cell& cell) const {
+    constexpr double most_filled = 0.5;  // of its cells
+    return may_lie_anywhere && area(box()) <= most_filled * area(box_of_cells()) * cell.width * cell.height;
+  }
+};
+
+Array<PartExtent> extents_of_parts(const Array<DividedLayout>& layouts, const Cell& cell) {
+  constexpr double rounding = 1e-6;  // cells, within which places are put onto the lattice
+  Array<PartExtent> out;
+  for (const DividedLayout& layout : layouts) {
+    const Eigen::Index first = ssize(out);
+    out.resize(first + layout.part_count);
+    for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
+      const Complex z = (*layout.position)[i];
+      // What lies on a line of the lattice but for rounding belongs to the cell beyond it, whatever the last digits.
+      out[first + layout.part[i]].add(
+          z, {std::floor((z.real() + rounding) / cell.width), std::floor((z.imag() + rounding) / cell.height)});
+    }
+    for (auto part = out.begin() + first; part != out.end(); ++part) part->may_lie_anywhere = layout.may_lie_anywhere;
+  }
+  return out;
 }
 
 }  // namespace
@@ -85,12 +129,12 @@ Array<Similarity> arrange(const Array<Island>& islands) {
     const Extent extent = extent_along(hull, std::conj(out[i].turn));
     out[i].shift = -extent.low;
     boxes.push_back({extent.width(), extent.height()});
-    total += boxes.back().width * boxes.back().height;
+    total += area(boxes.back());
   }
   const Shelves shelves = shelve(boxes, islands.size() > 1 ? margin * std::sqrt(total) : 0.0);
   for (std::size_t i = 0; i < islands.size(); ++i) {
     out[i].shift += shelves.place[i];
-    if (shelves.size > 0) out[i].divisor = shelves.size;
+    if (shelves.size() > 0) out[i].divisor = shelves.size();
   }
   for (std::size_t i = 0; i < islands.size(); ++i) {
     if (!islands[i].pin) continue;
@@ -104,34 +148,40 @@ Array<Similarity> arrange(const Array<Island>& islands) {
 }
 
 void arrange_on_lattice(const Array<DividedLayout>& layouts, const PointLattice& lattice, int step) {
-  constexpr double rounding = 1e-6;  // cells, within which places are put onto the lattice
   // Rows of the lattice that have points straight above each other.
-  const double width = step, height = step * (lattice.square() ? 1 : 2 * lattice.generator().imag());
-  struct Span {
-    double left = infinity, right = -infinity, bottom = infinity, top = -infinity;  // in steps
-  };
-  Array<Span> spans;
-  for (const DividedLayout& layout : layouts) {
-    const Eigen::Index first = ssize(spans);
-    spans.resize(first + layout.part_count);
-    for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
-      const Complex z = (*layout.position)[i];
-      // What lies on a line of the lattice but for rounding belongs to the cell beyond it, whatever the last digits.
-      const double column = std::floor((z.real() + rounding) / width), row = std::floor((z.imag() + rounding) / height);
-      Span& span = spans[first + layout.part[i]];
-      span = {std::min(span.left, column), std::max(span.right, column + 1), std::min(span.bottom, row),
-              std::max(span.top, row + 1)};
+  const Cell cell{static_cast<double>(step), step * (lattice.square() ? 1 : 2 * lattice.generator().imag())};
+  const Array<PartExtent> parts = extents_of_parts(layouts, cell);
+  Array<IslandBox> scraps, boxes;
+  double area_of_scraps = 0;
+  for (const PartExtent& part : parts) {
+    if (part.is_scrap(cell)) {
+      scraps.push_back(part.box());
+      area_of_scraps += area(scraps.back());
+    } else {
+      boxes.push_back(part.box_of_cells());
     }
   }
-  Array<IslandBox> boxes;
-  for (const Span& span : spans) boxes.push_back({span.right - span.left, span.top - span.bottom});
+  constexpr double scrap_gap = 1 / 16.0;  // between scraps, of the side of a square as large as the mean of them
+  const double gap = scraps.empty() ? 0 : scrap_gap * std::sqrt(area_of_scraps / static_cast<double>(scraps.size()));
+  const Shelves together = shelve(scraps, gap);
+  if (!scraps.empty()) {
+    boxes.push_back({std::ceil((together.width + gap) / cell.width), std::ceil((together.height + gap) / cell.height)});
+  }
   const Shelves shelves = shelve(boxes, 0);
+  const auto in_cells = [&](Complex steps) { return Complex(steps.real() * cell.width, steps.imag() * cell.height); };
+  Array<Complex> moves;
+  std::size_t scrap = 0, box = 0;
+  for (const PartExtent& part : parts) {
+    if (part.is_scrap(cell)) {
+      moves.push_back(in_cells(shelves.place.back()) + Complex(gap / 2, gap / 2) + together.place[scrap++] - part.low);
+    } else {
+      moves.push_back(in_cells(shelves.place[box++] - part.first_cell));
+    }
+  }
   Index first = 0;
   for (const DividedLayout& layout : layouts) {
     for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
-      const Index part = first + layout.part[i];
-      const Complex steps = shelves.place[part] - Complex(spans[part].left, spans[part].bottom);
-      (*layout.position)[i] += Complex(steps.real() * width, steps.imag() * height);
+      (*layout.position)[i] += moves[first + layout.part[i]];
     }
     first += layout.part_count;
   }

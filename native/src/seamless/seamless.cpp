@@ -66,6 +66,13 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   return out;
 }
 
+// Whether no cut, cone or crease relates the layout to the lattice.
+bool may_lie_anywhere(const SeamlessComponent& component) {
+  const PerHalfedge<char>& is_cut = component.map->cut_graph.is_cut;
+  return std::none_of(is_cut.begin(), is_cut.end(), [](char is) { return is != 0; }) &&
+         !component.alignment->has_value();
+}
+
 // The layout on the grid as a map in cells. Marked seams that no cone needed are cuts of it, too, whose transition is
 // the identity until the pieces they enclose are placed.
 ComponentMap map_on_grid(const SeamlessComponent& component, Complex shift, const Eigen::VectorXcd& position) {
@@ -191,8 +198,10 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
       *components[i].map = map_on_grid(components[i], shift, grid.layouts[i].position);
   }
   Array<DividedLayout> layouts;
-  for (const SeamlessComponent& component : components)
+  for (const SeamlessComponent& component : components) {
     layouts.push_back(divide(component.source->mesh, *component.map));
+    layouts.back().may_lie_anywhere = may_lie_anywhere(component);
+  }
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);
 
   SeamlessReport report;

@@ -14,6 +14,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+from layout_check import coverage, overlapping_islands
 from map_checks import codes, components, digest, only, surface, unwrap
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -410,3 +411,20 @@ def test_prescribed_turning_of_borders() -> None:
 
 def test_digests_tell_layouts_apart() -> None:
     assert digest(ball()) == digest(seamless(BALL)) != digest(ball(tiles=25))
+
+
+def test_scraps_without_cuts_share_cells():
+    """Beside a ball with cones, whose parts lie on whole tiles, 200 triangles take less room than a cell each."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0.2, 0.9, 0]])
+    places = np.stack(np.divmod(np.arange(200), 20), axis=1) @ np.array([[1, 0, 0], [0, 1, 0]])
+    scraps = [meshes.make(0.02 * (corners + 2 * place), [[0, 1, 2]]) for place in places]
+    mesh = meshes.merge([BALL, *scraps])
+    result = lsgp.auto_unwrap(surface(mesh), preset="tile")
+    assert result.solved.all()
+    assert undeclared_faults(surface(mesh), result, lsgp.preset_options("tile")) == []
+    assert overlapping_islands(result.corner_uv, result.island) == 0
+    is_scrap = np.arange(len(mesh.triangles)) >= len(BALL.triangles)
+    of_scraps = result.corner_uv[is_scrap].reshape(-1, 2)
+    assert np.ptp(of_scraps, axis=0).prod() < len(scraps) / 2
+    box = np.concatenate([of_scraps.min(axis=0), of_scraps.max(axis=0)])
+    assert coverage((result.corner_uv[is_scrap] - box[:2]) / (box[2:] - box[:2]), np.arange(200)) > 0.3
