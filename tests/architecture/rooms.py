@@ -169,6 +169,12 @@ API = (
     "triangles",
 )
 LIBRARY = ("base", "API", "images", "layouts", "presets", "quads", "io")
+# Folders between the surface and the public functions, without which those do that call the latter.
+BY_PUBLIC_FUNCTIONS = (
+    *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
+    *("repair", "pipeline", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
+    *("packing", "api"),
+)
 # Folders of native/src, each of which may use those before it, but for those it has to do without.
 SOURCES = {
     "base": (),
@@ -201,15 +207,15 @@ SOURCES = {
         *("pipeline", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
     ),
     "api": (),
-    # It makes maps by the public functions.
-    "unwrap": (
-        *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
-        *("repair", "division", "pieces", "split", "placement", "seamless", "quads", "assembly", "kept"),
-        *("packing", "api"),
-    ),
+    # These and what follows make maps by the public functions.
+    "measures": BY_PUBLIC_FUNCTIONS,
+    "completion": BY_PUBLIC_FUNCTIONS,
+    "choices": BY_PUBLIC_FUNCTIONS,
+    "unwrap": tuple(room for room in BY_PUBLIC_FUNCTIONS if room != "pipeline"),
     "shaping": (
         *("solvers", "plane", "cut", "transitions", "systems", "unfold", "prescription", "sites", "search", "repair"),
-        *("division", "pieces", "split", "placement", "seamless", "quads", "kept", "packing", "api", "unwrap"),
+        *("division", "pieces", "split", "placement", "seamless", "quads", "kept", "packing", "api", "measures"),
+        *("completion", "choices", "unwrap"),
     ),
 }
 

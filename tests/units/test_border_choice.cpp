@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "unwrap/border_choice.hpp"
-#include "unwrap/border_gain.hpp"
+#include "choices/border_choice.hpp"
+#include "choices/border_gain.hpp"
 
 using namespace lsgp;
 

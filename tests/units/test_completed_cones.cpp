@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "choices/feature_choice.hpp"
 #include "lsgp/lsgp.hpp"
-#include "unwrap/feature_choice.hpp"
 
 using namespace lsgp;
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "unwrap/objective.hpp"
+#include "measures/objective.hpp"
 
 using namespace lsgp;
 

@@ -6,20 +6,20 @@
 #include <functional>
 #include <utility>
 
+#include "base/progress_share.hpp"
 #include "base/text.hpp"
+#include "choices/division_choice.hpp"
+#include "choices/feature_choice.hpp"
+#include "choices/marked_seams.hpp"
+#include "choices/tube_choice.hpp"
+#include "choices/unfolded_parts.hpp"
+#include "completion/features_wanted.hpp"
 #include "lsgp/lsgp.hpp"
+#include "measures/map_comparison.hpp"
 #include "pipeline/validation.hpp"
 #include "unwrap/coarse_first.hpp"
-#include "unwrap/division_choice.hpp"
-#include "unwrap/feature_choice.hpp"
-#include "unwrap/features_wanted.hpp"
-#include "unwrap/map_comparison.hpp"
-#include "unwrap/marked_seams.hpp"
 #include "unwrap/presets.hpp"
-#include "unwrap/progress_share.hpp"
 #include "unwrap/time_limit.hpp"
-#include "unwrap/tube_choice.hpp"
-#include "unwrap/unfolded_parts.hpp"
 
 namespace lsgp {
 

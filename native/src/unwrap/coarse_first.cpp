@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/progress_monitor.hpp"
+#include "base/progress_share.hpp"
 #include "base/text.hpp"
-#include "unwrap/progress_share.hpp"
 #include "unwrap/simplified_surface.hpp"
 
 namespace lsgp {

@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "unwrap/border_choice.hpp"
-#include "unwrap/made_map.hpp"
-#include "unwrap/objective.hpp"
-#include "unwrap/tube_choice.hpp"
+#include "choices/border_choice.hpp"
+#include "choices/tube_choice.hpp"
+#include "measures/made_map.hpp"
+#include "measures/objective.hpp"
 
 namespace lsgp {
 

@@ -3,9 +3,9 @@
 
 #include <utility>
 
+#include "measures/made_map.hpp"
 #include "mesh/edge_table.hpp"
 #include "mesh/vertex_costs.hpp"
-#include "unwrap/made_map.hpp"
 
 namespace lsgp {
 

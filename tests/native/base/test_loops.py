@@ -48,7 +48,7 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "unwrap/objective.cpp": [
+    "measures/objective.cpp": [
         (
             "while (const std::optional<Estimate> next = most_promising(candidates))",
             "candidates, each once",

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a map has to gain by borders at creases, compared with the usual map without them.
+#pragma once
+
+#include "measures/made_map.hpp"
+#include "measures/objective.hpp"
+
+namespace lsgp {
+
+// Borders at which components may end, and the component of each.
+struct PossibleBorders {
+  VertexPairs edges;
+  Array<Index> component;
+
+  PossibleBorders(const SurfaceParts& parts, VertexPairs borders);
+
+  // Those of some components.
+  VertexPairs of(const Array<Index>& components) const;
+};
+
+// A reason for which components may end at creases. chosen: numbers of components.
+class BorderGain {
+ public:
+  BorderGain() = default;
+  BorderGain(const BorderGain&) = delete;
+  BorderGain& operator=(const BorderGain&) = delete;
+  virtual ~BorderGain() = default;
+
+  // The chosen components on which a map with borders is worth a try.  progress: of packing.  Throws CANCELLED.
+  virtual Array<Index> promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) = 0;
+
+  // The chosen components that gain by that they all end at creases in the first map.
+  virtual Array<Index> gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) = 0;
+
+  // Whether the map is better as a whole.
+  virtual bool may_replace(MadeMap& bordered, MadeMap& usual, const Progress& progress) = 0;
+};
+
+// Maps that cost less.
+class LowerCost : public BorderGain {
+ public:
+  // parts: of the surface without the borders.
+  LowerCost(const SurfaceParts& parts, const PossibleBorders& borders, Objective& objective)
+      : parts_(parts), borders_(borders), objective_(objective) {}
+
+  // Those that are expected to cost less: they keep a tenth of their stretch, are as many islands as pieces between
+  // creases, and fill the square well if they do not.
+  Array<Index> promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) override;
+
+  // All of them if the whole map costs less, otherwise those that do.
+  Array<Index> gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) override;
+
+  // Where it costs less as a whole, with no further defects.
+  bool may_replace(MadeMap& bordered, MadeMap& usual, const Progress& progress) override;
+
+ private:
+  // The number of pieces between all possible borders that each component would have.
+  PerComponent<Index> pieces() const;
+
+  const SurfaceParts& parts_;
+  const PossibleBorders& borders_;
+  Objective& objective_;
+};
+
+// Seamless maps whose marked features, or creases if none are marked, run along the lattice, at little stretch and with
+// large tiles.
+class AlongLattice : public BorderGain {
+ public:
+  // parts: of the surface without the borders.
+  AlongLattice(const SurfaceParts& parts, const PossibleBorders& borders) : parts_(parts), borders_(borders) {}
+
+  // Those many of whose creases do not, or that are stretched by more than a tenth or left out, if they are not small.
+  Array<Index> promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) override;
+
+  // Where more of them has a map, or as much, if that is worth that the texture does not run on across their creases;
+  // if they are not small.
+  Array<Index> gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) override;
+
+  // Where all have gained, and it has no further defects.
+  bool may_replace(MadeMap& bordered, MadeMap& usual, const Progress& progress) override;
+
+ private:
+  Array<Index> if_large(const Array<Index>& components) const;
+  // The marked features, or the possible borders and the creases found in any of these maps.
+  VertexPairs creases(const Array<const MadeMap*>& maps) const;
+  // Of the length of each component's edges what runs along the lattice; 1 without any.
+  PerComponent<double> shares(const MadeMap& made, const VertexPairs& edges) const;
+
+  const SurfaceParts& parts_;
+  const PossibleBorders& borders_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measures/objective.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <tuple>
+#include <utility>
+
+#include "base/array.hpp"
+#include "base/progress_share.hpp"
+#include "lsgp/errors.hpp"
+
+namespace lsgp {
+
+namespace {
+
+struct Estimate {
+  double cost;
+  std::size_t place;
+};
+
+// The candidate that is expected to cost least; none where none can be made.
+std::optional<Estimate> most_promising(const std::vector<Candidate>& candidates) {
+  std::optional<Estimate> least;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const std::optional<double> expected = candidates[i].expected();
+    if (expected && (!least || *expected < least->cost)) least = {*expected, i};
+  }
+  return least;
+}
+
+}  // namespace
+
+bool Objective::Rank::is_better_than(const Rank& best) const {
+  const auto flaws = std::tie(left_out, defects), of_best = std::tie(best.left_out, best.defects);
+  return flaws < of_best || (flaws == of_best && cost < best.cost - rounding_of_costs);
+}
+
+Quality Objective::quality(MadeMap& made, const Progress& progress, double asymmetry) const {
+  Quality out = measured(made, share_, progress);
+  out.asymmetry = asymmetry;
+  return out;
+}
+
+Made Objective::choose(std::vector<Candidate> candidates, const Progress& progress) {
+  Made best;
+  Rank rank;
+  ProgressSteps steps(progress);
+  std::exception_ptr failure;
+  while (const std::optional<Estimate> next = most_promising(candidates)) {
+    const double most = std::min(rank.has_defects() ? infinity : rank.cost, bound());
+    const bool is_first = !best && !failure;
+    if (!is_first && most < infinity && next->cost - error_of_estimates >= most) break;
+    const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
+    const Candidate candidate = std::move(*place);
+    candidates.erase(place);
+    const Progress step = steps.next();
+    Made made;
+    const auto refuse = [&](Code code) {
+      failure = std::current_exception();
+      choices_.push_back({candidate.name, next->cost, {}, {}, std::string("is refused: ") + name(code), false});
+    };
+    try {
+      made = candidate.make(step);
+    } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
+      refuse(error.code());
+      continue;
+    } catch (const std::bad_alloc&) {
+      refuse(Code::out_of_memory);
+      continue;
+    }
+    if (!best_so_far_) best_so_far_ = made;  // measuring may be stopped
+    const Quality quality = candidate.quality(made, share_of(step, 1, 1));
+    const Rank own{static_cast<double>(quality.left_out), static_cast<double>(quality.defects),
+                   cost(quality, weights_)};
+    const bool is_best = own.is_better_than(rank);
+    if (is_best) {
+      best = made;
+      rank = own;
+    }
+    if (own.is_better_than(rank_so_far_)) {
+      best_so_far_ = made;
+      rank_so_far_ = own;
+    }
+    note(candidate.name_of_made ? candidate.name_of_made() : candidate.name, quality, next->cost, is_best);
+  }
+  for (const Candidate& candidate : candidates) {
+    const std::optional<double> expected = candidate.expected();
+    if (expected) choices_.push_back({candidate.name, *expected, {}, {}, "is expected to cost more", false});
+  }
+  if (!best) std::rethrow_exception(failure);
+  tell(progress, 1);
+  return best;
+}
+
+bool Objective::is_beyond_bound(Quality expected) const {
+  if (!rival_) return false;
+  expected.on_lattice = rival_->on_lattice;
+  return cost(expected, weights_) - error_of_estimates >= bound();
+}
+
+void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {
+  choices_.push_back({name, estimate, cost(quality, weights_), quality, in_words(quality), is_best});
+}
+
+void Objective::note_all(const std::string& surface, const std::vector<Choice>& others) {
+  for (const Choice& choice : others) {
+    choices_.push_back(choice);
+    choices_.back().name = surface + ": " + choice.name;
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The choice among candidates by what they cost.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measures/made_map.hpp"
+#include "measures/quality.hpp"
+
+namespace lsgp {
+
+// How far estimates are off, in hundredths of L2 stretch: what is expected to cost more than the best one made by this
+// is not made. Half of the estimates of further islands are off by less; most of those of other cones and cuts are too
+// low, so that more than this gains nothing.
+constexpr double error_of_estimates = 0.15;
+
+// A smaller difference of costs is to decide nothing: the first of two such candidates is taken.
+constexpr double rounding_of_costs = 0.01;
+
+// One of several maps to choose from.
+struct Candidate {
+  std::string name;  // for the trace
+  // What it will cost, told without a map, from those made so far; none where it cannot be made, or is one of them.
+  std::function<std::optional<double>()> expected;
+  std::function<Made(const Progress&)> make;  // throws Error where it cannot be made
+  std::function<Quality(const Made&, const Progress&)> quality;
+  std::function<std::string()> name_of_made;  // or empty: its name
+};
+
+// By which the maps of one surface are compared, and the trace of what was chosen from.
+class Objective {
+ public:
+  Objective(const Weights& weights, SquareShare share) : weights_(weights), share_(share) {}
+
+  const Weights& weights() const { return weights_; }
+  SquareShare share() const { return share_; }
+  const std::vector<Choice>& choices() const { return choices_; }
+
+  // Of a map.  progress: of packing.  Throws CANCELLED.
+  Quality quality(MadeMap& made, const Progress& progress, double asymmetry = 0) const;
+
+  // The same in one number.
+  double cost_of(MadeMap& made, const Progress& progress) const { return cost(quality(made, progress), weights_); }
+
+  // The candidate with the fewest triangles left out, the fewest defects, and the lowest cost. The one that is expected
+  // to cost least is made first; then others as long as they may cost less than the best.
+  // Throws CANCELLED, and what the last one throws where none can be made.
+  Made choose(std::vector<Candidate> candidates, const Progress& progress);
+
+  // Of all maps that were made until now, in any choice; null where there is none.
+  const Made& best_so_far() const { return best_so_far_; }
+
+  // Whether a map of this quality, on as good a lattice as the other one, is expected to cost more than the bound.
+  bool is_beyond_bound(Quality expected) const;
+
+  // Adds a map to the trace.
+  void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
+
+  // Adds the trace of another choice, on a surface that is named.
+  void note_all(const std::string& surface, const std::vector<Choice>& others);
+
+  // During its lifetime nothing but the first candidate of a choice is made that is expected to cost more than another
+  // map does.
+  class Bound {
+   public:
+    Bound(Objective& objective, const Quality& rival) : objective_(objective) { objective.rival_ = rival; }
+    ~Bound() { objective_.rival_.reset(); }
+    Bound(const Bound&) = delete;
+    Bound& operator=(const Bound&) = delete;
+
+   private:
+    Objective& objective_;
+  };
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+ private:
+  // By which candidates are compared.
+  struct Rank {
+    double left_out = infinity, defects = infinity, cost = infinity;
+
+    bool has_defects() const { return left_out > 0 || defects > 0; }
+    bool is_better_than(const Rank& best) const;
+  };
+
+  double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
+
+  const Weights weights_;
+  const SquareShare share_;
+  std::vector<Choice> choices_;
+  std::optional<Quality> rival_;  // of the bound
+  Made best_so_far_;
+  Rank rank_so_far_;
+};
+
+}  // namespace lsgp
