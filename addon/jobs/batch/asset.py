@@ -25,7 +25,8 @@ from ..layouts.densities import at_density
 from ..layouts.maps import PackSettings, placed_maps, tiny_findings
 from ..tasks.cuts import cut_choice
 from ..tasks.directions import direction_choice
-from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
+from ..tasks.unwrapped import Unwrapped
+from ..tasks.unwrapping import UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
 from .files import Unreadable, mesh_objects, open_file, save_file
 
 if TYPE_CHECKING:

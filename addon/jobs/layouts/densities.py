@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.errors import Refused
 from ...core.islands import Place
-from ..tasks.unwrapping import Unwrapped
+from ..tasks.unwrapped import Unwrapped
 from .packing import pack_at_scale, pack_in_place
 
 if TYPE_CHECKING:

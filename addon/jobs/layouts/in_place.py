@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...core.islands import Islands, Place, Surroundings
 from ..tasks.areas import size_in_texels, total_area
-from ..tasks.unwrapping import Unwrapped
+from ..tasks.unwrapped import Unwrapped
 
 FloatArray = NDArray[np.float64]
 

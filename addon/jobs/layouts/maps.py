@@ -22,7 +22,8 @@ from ..tasks import cells
 from ..tasks.areas import size_in_texels, total_area
 from ..tasks.directions import drawn_directions
 from ..tasks.summaries import unwrap_summary
-from ..tasks.unwrapping import Unwrapped, UnwrapTask
+from ..tasks.unwrapped import Unwrapped
+from ..tasks.unwrapping import UnwrapTask
 from ..uv_maps.texels import map_density
 from . import in_place, packing, upright
 from .densities import packed_at_density

@@ -16,7 +16,8 @@ import bpy
 import numpy as np
 
 from ...core.digest import digest_of
-from ..tasks.unwrapping import Unwrapped, UnwrapTask, unwrap, unwrap_all
+from ..tasks.unwrapped import Unwrapped
+from ..tasks.unwrapping import UnwrapTask, unwrap, unwrap_all
 
 if TYPE_CHECKING:
     from ..tasks.solving import Progress

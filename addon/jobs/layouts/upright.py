@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.islands import Islands
 from ..tasks.directions import UP
-from ..tasks.unwrapping import Unwrapped
+from ..tasks.unwrapped import Unwrapped
 
 FloatArray = NDArray[np.float64]
 

@@ -28,7 +28,8 @@ from ..angles.angle_table import FollowedTable
 from ..layouts.maps import report_on
 from ..tasks.computation import Computation
 from ..tasks.cuts import with_cut_costs
-from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
+from ..tasks.unwrapped import Unwrapped
+from ..tasks.unwrapping import UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 from ..uv_maps.texels import map_density
 from .edited_cones import EditedCones
 from .edited_layout import Layout, Placement

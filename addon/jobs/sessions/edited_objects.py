@@ -14,7 +14,8 @@ from ...core.errors import object_errors
 from ...mesh.cones import marked_cones
 from ..angles import angle_table
 from ..layouts.maps import PackSettings
-from ..tasks.unwrapping import Unwrapped, UnwrapSettings
+from ..tasks.unwrapped import Unwrapped
+from ..tasks.unwrapping import UnwrapSettings
 from .cone_session import ConeSession
 from .edit_history import EditHistory
 from .edited_cones import ConesState, EditedCones

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ...core.errors import object_errors
 from ..layouts.maps import PackSettings, turned_for
-from ..tasks.unwrapping import Unwrapped
+from ..tasks.unwrapped import Unwrapped
 from .cone_session import ConeSession
 from .edited_layout import packed_where_needed
 

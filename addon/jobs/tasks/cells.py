@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import lsgp
 
     from ...core.region import Region
-    from .unwrapping import Unwrapped
+    from .unwrapped import Unwrapped
 
 
 def step(options: lsgp.Seamless) -> float:

@@ -12,7 +12,7 @@ from .cells import inexact_cuts
 if TYPE_CHECKING:
     import lsgp
 
-    from .unwrapping import Unwrapped
+    from .unwrapped import Unwrapped
 
 
 NOTICEABLE = math.radians(1.0)

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from ...core import native
 from ...core.errors import Refused
-from ...core.islands import Islands
 from . import cells
 from .areas import size_in_texels, total_area
 from .cones_between import told_between
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
 from .solving import solve_all
+from .unwrapped import Unwrapped
 
 if TYPE_CHECKING:
     import lsgp
@@ -110,38 +110,6 @@ class UnwrapTask:
 
     def with_threads(self, count: int) -> UnwrapTask:
         return replace(self, options=replace(self.options, threads=count))
-
-
-@dataclass(frozen=True, slots=True)
-class Unwrapped:
-    """A finished map.
-
-    corner_uv: (m, 3, 2) float64 as to be written, NaN where not solved. pinned: (m, 3) bool, the corners that kept
-    their UVs. aspect: as in the task. step: side of the cells by which islands of a seamless layout may be moved; None
-    for other layouts. note: what is to be told of its place. square_used: the part of
-    the UV square that all maps cover that are packed with this one; None: they are not, or into something else.
-    """
-
-    region: Region
-    result: lsgp.Result
-    corner_uv: NDArray[np.float64]
-    pinned: NDArray[np.bool_]
-    aspect: float
-    step: float | None
-    note: str = ""
-    square_used: float | None = None
-
-    @property
-    def warnings(self) -> list[lsgp.Finding]:
-        return self.result.warnings
-
-    def islands(self) -> Islands:
-        """The solved islands for the packer."""
-        solved = self.result.solved
-        region, island = self.region, self.result.island
-        return Islands(
-            region.surface.triangles[solved], self.corner_uv[solved], island[solved], self.pinned[solved], self.aspect
-        )
 
 
 def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:

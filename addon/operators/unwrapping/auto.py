@@ -28,7 +28,8 @@ from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...jobs.layouts.maps import PackSettings, map_summary, unwrap_and_place, write_map
 from ...jobs.tasks.placing import mark_placed
-from ...jobs.tasks.unwrapping import USUAL_TARGET, Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
+from ...jobs.tasks.unwrapped import Unwrapped
+from ...jobs.tasks.unwrapping import USUAL_TARGET, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.own_settings import keep_settings, own_settings
 from ...mesh.region_read import Groups

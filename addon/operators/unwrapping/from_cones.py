@@ -11,7 +11,8 @@ import bpy
 from ...core import identifiers
 from ...core.region import Region
 from ...jobs.layouts.maps import map_summary, unwrap_and_place, write_map
-from ...jobs.tasks.unwrapping import Unwrapped, UnwrapTask, unwrap_task
+from ...jobs.tasks.unwrapped import Unwrapped
+from ...jobs.tasks.unwrapping import UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.packing import PackingProperties, with_surroundings
