@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ..base.counted import counted
@@ -22,6 +23,7 @@ from ..io.whole_files import remove_partials, write_whole
 from ..run import exit_codes
 from ..run.named_files import Reads, named_files
 from ..run.terminal import ProgressLine
+from ..run.unwrap_options import seconds_option
 from .assets import (
     Asset,
     find_assets,
@@ -62,6 +64,8 @@ MESH_FILES = Kind(readable_suffixes(), output_name, PYTHON_WORKER)
 
 FURTHER_OPTIONS = "--options"
 SUMMARY = "summary.txt"
+_TOO_LONG = 1e7
+"""A time limit of so many seconds is a mistake."""
 
 
 def add_batch_options(batch: argparse.ArgumentParser) -> None:
@@ -83,7 +87,9 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
         action="store_true",
         help="resume an earlier run: skip assets that have a result or were refused, retry failed ones",
     )
-    batch.add_argument("--timeout", metavar="S", type=_seconds_option, help="time limit per asset in seconds")
+    batch.add_argument(
+        "--timeout", metavar="S", type=partial(seconds_option, below=_TOO_LONG), help="time limit per asset in seconds"
+    )
     batch.add_argument("--memory-limit", metavar="MB", type=_count_option, help="memory limit per asset (Linux)")
     batch.add_argument(
         "--exit-zero", action="store_true", help="exit code 0 once all assets are done, for farms that repeat tasks"
@@ -297,13 +303,3 @@ def _count_option(text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of at least 1")
     return int(text)
-
-
-def _seconds_option(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0 < seconds < 1e7:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
-    return seconds

@@ -183,7 +183,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     unwrap.add_argument(
         "--time-limit",
         metavar="S",
-        type=_seconds,
+        type=seconds_option,
         help="seconds after which the best map made until then is written, with the warning TIME_LIMIT; an error where "
         "there is none yet, as before the map of given cones without --preset (default: none)",
     )
@@ -526,12 +526,9 @@ def cone_count(args: argparse.Namespace) -> int | None:
     return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
 
 
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0 < seconds < math.inf:
+def seconds_option(text: str, below: float = math.inf) -> float:
+    seconds = _number(text)
+    if not 0 < seconds < below:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
     return seconds
 
