@@ -20,7 +20,7 @@ STUB = Path(__file__).resolve().parents[1] / "native" / "lsgp" / "_lsgp.pyi"
 HEAD = '''# SPDX-License-Identifier: GPL-3.0-or-later
 """Native verbs; call them through `lsgp.api`, which checks and converts.
 
-Written by tools/stub.py. What the tuples hold is said beside them in native/bindings/module.cpp.
+Written by tools/stub.py. What the tuples hold is said beside them in native/bindings.
 """
 
 from collections.abc import Callable, Sequence
