@@ -49,6 +49,7 @@ INFORMATION = frozenset(
         "FEATURES_RELEASED",
         "FLAT_CONES",
         "GRID_REFINED",
+        "ISLANDS_HIDDEN",
         "ISLANDS_STACKED",
         "ISOLATED_VERTICES",
         "JUNCTION_SHARE",

@@ -73,6 +73,14 @@ double usual_margin(const FloatArray& corner_uv, const IndexArray& island, int t
   return without_gil([&] { return lsgp::usual_margin(uv, islands, tiles); });
 }
 
+IndexArray hidden_islands(const SurfaceArrays& surface_arrays, const IndexArray& island,
+                          const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const std::vector<Index> islands = to_vector("island", island);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_array(without_gil([&] { return lsgp::hidden_islands(surface, islands, tell); }));
+}
+
 py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
   const lsgp::CornerUv uv = to_corner_uv(corner_uv, any_length);
   return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
@@ -86,5 +94,6 @@ void define_layouts(py::module_& module) {
   module.def("shape_patches", &shape_patches, "surface"_a, "corner_uv"_a, "triangles"_a, "shape"_a, "corners"_a,
              "pinned"_a, "progress"_a);
   module.def("usual_margin", &usual_margin, "corner_uv"_a, "island"_a, "tiles"_a);
+  module.def("hidden_islands", &hidden_islands, "surface"_a, "island"_a, "progress"_a);
   module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
 }

@@ -82,6 +82,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
         _lsgp.pack_islands,
         (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), PACKING, None),
     ),
+    "hidden_islands": (_lsgp.hidden_islands, (ARRAYS, np.zeros(len(BALL.triangles), np.int32), None)),
     "usual_margin": (
         _lsgp.usual_margin,
         (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), 1),

@@ -53,6 +53,33 @@ TEST_CASE("a tree of boxes finds every two that meet, once") {
   }
 }
 
+TEST_CASE("a tree of boxes finds those that meet another one, once") {
+  Random random(2);
+  const auto box = [&](double size) {
+    const double x = between(random, -1, 1), y = between(random, -1, 1);
+    return lsgp::Box{x, x + size * between(random, 0, 1), y, y + size * between(random, 0, 1)};
+  };
+  for (const int count : {0, 1, 8, 9, 300}) {
+    CAPTURE(count);
+    lsgp::Array<lsgp::Box> boxes;
+    for (int i = 0; i < count; ++i) boxes.push_back(box(i % 17 == 0 ? 1 : 0.1));
+    const lsgp::AabbTree tree(boxes);
+    for (const double size : {0.0, 0.3}) {
+      const lsgp::Box other = box(size);
+      std::multiset<lsgp::Index> found, expected;
+      CHECK(!tree.any_meeting(other, [&](lsgp::Index i) {
+        found.insert(i);
+        return false;
+      }));
+      for (lsgp::Index i = 0; i < lsgp::ssize(boxes); ++i) {
+        if (lsgp::meet(boxes[i], other)) expected.insert(i);
+      }
+      CHECK(found == expected);
+      CHECK(tree.any_meeting(other, [](lsgp::Index) { return true; }) == !expected.empty());
+    }
+  }
+}
+
 TEST_CASE("boxes that share a point alone meet") {
   const lsgp::Array<lsgp::Box> boxes{{0, 1, 0, 1}, {1, 2, 1, 2}, {3, 4, 0, 4}};
   int visits = 0;

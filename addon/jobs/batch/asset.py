@@ -175,7 +175,8 @@ def _layouts(
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
         effort = pack.effort if packing is None or packing.effort is None else packing.effort
-        placed = placed_maps(solved, replace(pack, stack=args.stack, effort=effort))
+        inside = 1.0 if args.inside is None else args.inside
+        placed = placed_maps(solved, replace(pack, stack=args.stack, effort=effort, inside=inside))
         layouts = [unwrapped.corner_uv for unwrapped in placed]
     texels, findings = unwrap_options.texel_layout(args), []
     if texels is not None:

@@ -27,6 +27,7 @@ from ..tasks.unwrapping import UnwrapTask
 from ..uv_maps.texels import map_density
 from . import in_place, packing, upright
 from .densities import packed_at_density
+from .inside import with_less_inside
 from .remembered import unwrap_all_once
 from .stacking import packed_in_stacks
 
@@ -51,8 +52,9 @@ class PackSettings:
     texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
     islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells. effort: as of
-    `lsgp.pack_islands`. surroundings: of a selection that is placed as by `packing.pack_in_place`; None: all faces are
-    unwrapped, or islands are packed as if they were all.
+    `lsgp.pack_islands`. inside: as of `lsgp.auto_unwrap`, object by object, where the square is filled.
+    surroundings: of a selection that is placed as by `packing.pack_in_place`; None: all faces are unwrapped, or
+    islands are packed as if they were all.
     """
 
     pack: bool
@@ -64,6 +66,7 @@ class PackSettings:
     unit: float = 1.0
     stack: str | None = None
     effort: str = "good"
+    inside: float = 1.0
     surroundings: Surroundings | None = None
 
 
@@ -109,6 +112,10 @@ def placed_maps(
         place = None if settings.surroundings is None else in_place.place_of(solved, settings.surroundings)
         return _at(solved, packed_at_density(solved, alike, settings.texels, unit=settings.unit, place=place, **how))
     margin, notes = settings.margin, []
+    if settings.inside < 1:
+        parts, hidden = with_less_inside(solved, parts, settings.inside)
+        if hidden:
+            notes.append(f"{counted(hidden, 'island')} inside smaller")
     pack = partial(packing.pack, margin=margin, udim=settings.udim, **how)
     if settings.surroundings is not None:
         place, parts = in_place.at_density(solved, parts, settings.surroundings)

@@ -150,6 +150,14 @@ class UV_OT_cone_auto_unwrap(
         "appears on all. They do not count as overlapping. Not at a texel density",
         items=enum_items(STACKS),
     )
+    inside: bpy.props.FloatProperty(
+        name="Inside",
+        description="Size of islands that nothing outside their object can see, in that of the others, so that these "
+        "become larger; 1: the same. Not at a texel density",
+        default=1.0,
+        min=0.01,
+        max=1.0,
+    )
     use_subsurf_data: bpy.props.BoolProperty(
         name="Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
@@ -287,6 +295,8 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "straighten")
             if self.preset != "TILE":
                 body.prop(self, "compact")
+                if self.scale == "FILL":
+                    body.prop(self, "inside", slider=True)
             body.prop(self, "symmetric")
             body.prop(self, "follow_strokes")
             body.prop(self, "use_subsurf_data")
@@ -362,7 +372,7 @@ class UV_OT_cone_auto_unwrap(
         if by_cells:
             return pack
         if self.scale == "FILL":
-            return replace(pack, stack=STACKS[self.stack][0])
+            return replace(pack, stack=STACKS[self.stack][0], inside=self.inside)
         layout = native.lsgp.TexelLayout(self.density, size, self.udim, self.margin)
         return replace(pack, texels=layout, unit=length_unit(bpy.context.scene).size)
 

@@ -88,6 +88,9 @@ struct AutoUnwrapOptions {
   bool pack = true;
   std::optional<PackingEffort> effort;  // none: that of the preset
   std::optional<double> margin;         // none: usual_margin
+  // Of packed islands that nothing outside can see, as by hidden_islands: their texel density in that of the others,
+  // above 0 and at most 1.
+  std::optional<double> inside;
   // After so many the best map made until then is the result, and TIME_LIMIT says so.
   std::optional<double> seconds;
 };

@@ -66,4 +66,10 @@ LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Inde
 // `pack_islands` refuses.
 LSGP_API double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island, int tiles = 1);
 
+// The islands of which nothing outside can see any triangle: from no point of a sample of each does a ray, in any of 64
+// directions, leave the surface, which hides what is behind it from both sides.  island: (m) as above.
+// Throws what `parameterize` throws for surfaces, WRONG_PARAMETER and INDEX_OUT_OF_RANGE.
+LSGP_API std::vector<Index> hidden_islands(const Surface& surface, const std::vector<Index>& island,
+                                          const Progress& progress = {});
+
 }  // namespace lsgp

@@ -19,6 +19,7 @@ from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
 from .arranging import require_up, upright_turns
+from .inside import with_less_inside
 from .stacking import find_stacks
 from .texels import TexelLayout, at_texel_density, outside_findings, tile_count
 from .upright import stand_upright
@@ -34,6 +35,8 @@ SHELVES = "shelves"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
 
+# Of the time of laying out, where islands are looked for that nothing outside can see.
+_LOOKING_INSIDE = 0.3
 # Of the time of finding stacks and packing those that stay.
 _STACKING = 0.3
 
@@ -59,6 +62,8 @@ class Packing:
         `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
         up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
+        inside: the texel density of islands that nothing outside can see in that of the others, above 0 and at most 1;
+        None: the same.
     """
 
     pack: Pack | None = None
@@ -67,6 +72,7 @@ class Packing:
     stack: Stack | None = None
     effort: Effort | None = None
     up: Sequence[float] | None = None
+    inside: float | None = None
 
     def __post_init__(self) -> None:
         """Raises InputError: WRONG_PARAMETER."""
@@ -90,6 +96,10 @@ class Packing:
             arguments.require_choice("effort", self.effort, get_args(Effort))
             if self.pack == SHELVES:
                 arguments.refuse("effort", self.effort, 'pass it with pack="tight", or leave it out')
+        if self.inside is not None:
+            remedy = "pass a share of the texel density, above 0 and at most 1"
+            if not 0 < arguments.number("inside", self.inside, remedy) <= 1:
+                arguments.refuse("inside", self.inside, remedy)
 
     @property
     def is_tight(self) -> bool:
@@ -247,8 +257,11 @@ def laid_out(
 
     result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for, and
         only by quarters where features run straight.
-    texels: without UDIM tiles.  Raises InputError, Cancelled.
+    texels: without UDIM tiles, and without `Packing.inside`.  Raises InputError, Cancelled.
     """
+    if packing.inside is not None:
+        result = with_less_inside(surface, result, packing.inside, share_of(progress, 0.0, _LOOKING_INSIDE))
+        progress = share_of(progress, _LOOKING_INSIDE, 1.0)
     none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
         return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)

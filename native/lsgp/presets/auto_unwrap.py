@@ -181,6 +181,7 @@ def auto_unwrap(
     margin: float | None = None,
     udim: int | None = None,
     stack: Stack | None = None,
+    inside: float | None = None,
     effort: Effort | None = None,
     texels: TexelLayout | None = None,
     up: Sequence[float] | None = None,
@@ -215,6 +216,9 @@ def auto_unwrap(
         `Options.square_share`; not with texels, which have their own.
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
+    inside: the texel density, in that of the others, of islands that nothing outside can see, for instance 0.25: no
+        ray from them leaves the surface, which hides what is behind it from both sides. ISLANDS_HIDDEN among the
+        warnings says which. None: the same. Not with texels, nor in layouts that are never packed.
     effort: how long a tight layout is looked for, as of `pack_islands`; None: "quick" with "paint", else "good".
     seconds: after so many the best map made until then is packed quickly, and TIME_LIMIT among the warnings says so; it
         is raised where no map was made in time. None: no limit. Results depend on the machine then.
@@ -239,7 +243,9 @@ def auto_unwrap(
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
         if chosen.seamless is not None:
             refuse_of_seamless()
-    packing = Packing(pack, margin, udim, stack, effort, up)
+        if inside is not None:
+            raise InputError("WRONG_PARAMETER", "inside and texels both say how large islands are; pass one of them.")
+    packing = Packing(pack, margin, udim, stack, effort, up, inside)
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
@@ -281,6 +287,8 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
             arguments.refuse("udim", packing.udim, f"leave it out, since this layout is {why}")
         if is_so and packing.stack is not None:
             arguments.refuse("stack", packing.stack, f"leave it out, since this layout is {why}")
+        if is_so and packing.inside is not None:
+            arguments.refuse("inside", packing.inside, f"leave it out, since this layout is {why}")
         if is_so and packing.effort is not None:
             arguments.refuse("effort", packing.effort, f"leave it out, since this layout is {why}")
     if texels is not None and packing.udim is not None:

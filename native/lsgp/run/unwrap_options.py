@@ -457,11 +457,25 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         "mirrored ones as well (default: none)",
     )
     unwrap.add_argument(
+        "--inside",
+        metavar="F",
+        type=_inside_option,
+        help="texel density of islands that nothing outside can see, in that of the others, for instance 0.25; at most "
+        "1 (default: the same)",
+    )
+    unwrap.add_argument(
         "--effort",
         choices=get_args(Effort),
         help="of packing tight layouts: the first one that is found, the best of some hundreds, or of many more, for "
         "minutes (default: quick with paint, otherwise good)",
     )
+
+
+def _inside_option(text: str) -> float:
+    share = _number(text)
+    if not 0 < share <= 1:
+        raise argparse.ArgumentTypeError(f"'{text}': F is above 0 and at most 1")
+    return share
 
 
 def texture_size_option(text: str) -> int:
@@ -597,10 +611,14 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
     Raises UsageError where options do not fit.
     """
     if _is_seamless(args):
-        for name in ("pack", "udim", "stack", "effort"):
+        for name in ("pack", "udim", "stack", "inside", "effort"):
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
         return None
+    if args.inside is not None and args.texel_density is not None:
+        raise UsageError("--inside and --texel-density both say how large islands are; leave one out")
+    if args.inside is not None and not (args.pack or args.preset or args.udim):
+        raise UsageError("--inside is for layouts that are packed; add --pack tight")
     for name in ("stack", "effort"):
         is_given = getattr(args, name) is not None
         if is_given and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
@@ -628,7 +646,7 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
     if effort is None and args.preset is not None and args.pack != SHELVES:
         effort = preset_effort(args.preset)
     up = DEFAULT_UP if args.up is None else tuple(args.up)
-    return Packing(args.pack, margin, args.udim, args.stack, effort, up if any(up) else None)
+    return Packing(args.pack, margin, args.udim, args.stack, effort, up if any(up) else None, args.inside)
 
 
 def library_options(args: argparse.Namespace) -> Options:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of intersecting axis-aligned boxes in the plane.
+// Pairs of intersecting axis-aligned boxes in the plane, and those that meet another one.
 #pragma once
 
 #include <algorithm>
@@ -65,6 +65,27 @@ class AabbTree {
         } else {
           open.insert(open.end(), {{a, b + 1}, {a, second.right}});
         }
+      }
+    }
+    return false;
+  }
+
+  // Whether is(i) holds for any box that meets this one; none is looked at after that.
+  template <typename Is>
+  bool any_meeting(const Box& box, Is is) const {
+    Array<Index> open;  // nodes
+    if (!nodes_.empty()) open.push_back(0);
+    while (!open.empty()) {
+      const Index a = open.back();
+      open.pop_back();
+      const Node& node = nodes_[a];
+      if (!meet(node.box, box)) continue;
+      if (!node.is_leaf()) {
+        open.insert(open.end(), {a + 1, node.right});
+        continue;
+      }
+      for (Index i = node.begin; i < node.end; ++i) {
+        if (meet(box_[i], box) && is(item_[i])) return true;
       }
     }
     return false;

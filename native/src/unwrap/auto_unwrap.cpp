@@ -39,6 +39,9 @@ void require_valid(const Weights& weights, const AutoUnwrapOptions& options) {
   if (!std::isfinite(target) || target <= 1) {
     throw Error(Code::wrong_parameter, concat("target is ", target, "; pass an L2 stretch, a finite number above 1."));
   }
+  if (options.inside && !(*options.inside > 0 && *options.inside <= 1)) {
+    throw Error(Code::wrong_parameter, concat("inside is ", *options.inside, "; pass a number above 0, at most 1."));
+  }
   if (options.seconds && !(*options.seconds > 0)) {
     throw Error(Code::wrong_parameter, concat("seconds is ", *options.seconds, "; pass a positive number."));
   }
@@ -58,6 +61,16 @@ Made best_for_strokes(const Surface& surface, const MapOptions& options,
   }
   tell(progress, 1);
   return usual;
+}
+
+// Scales islands that nothing outside can see.
+void scale_hidden(const Surface& surface, double scale, Result& result) {
+  std::vector<char> is_hidden(result.island.size(), 0);  // of islands, of which there are no more than triangles
+  for (const Index island : hidden_islands(surface, result.island)) is_hidden[island] = 1;
+  for (std::size_t f = 0; f < result.island.size(); ++f) {
+    const Index island = result.island[f];
+    if (island >= 0 && is_hidden[island]) result.corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(f)) *= scale;
+  }
 }
 
 // Packs the islands of a map, unless its margins leave no room.
@@ -159,6 +172,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
                 objective.choices()};
   tell_further_cuts(along.further, out.result);
   if (is_packed) {
+    if (options.inside) scale_hidden(whole, *options.inside, out.result);
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
     pack(out.result, options.margin, effort, share_of(after_measuring(unlimited), mapping, 1));
   }

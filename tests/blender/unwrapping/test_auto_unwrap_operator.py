@@ -516,3 +516,29 @@ def test_the_usual_target_is_that_of_the_library(reports):
     addon.jobs.layouts.remembered.forget()
     unwrap(creases=False, target=addon.jobs.tasks.unwrapping.USUAL_TARGET)
     assert np.array_equal(UvMap(bpy.context.object).uv, usual)
+
+
+@pytest.mark.one_blender
+def test_islands_inside_are_smaller(reports):
+    """Of two balls in one object, the one in the other."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3)
+    obj = bpy.context.object
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.5)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.join()
+
+    def share_inside(**options):
+        unwrap(preset="BAKE", **options)
+        mesh, found = obj.data, UvMap(obj)
+        areas = np.zeros(2)
+        for polygon in mesh.polygons:
+            u, v = found.uv[polygon.loop_start : polygon.loop_start + polygon.loop_total].T
+            area = abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)) / 2
+            areas[int(np.linalg.norm(polygon.center) < 0.6)] += area
+        return areas[1] / areas[0]
+
+    usual = share_inside()
+    assert "inside" not in reports()
+    assert share_inside(inside=0.5) == pytest.approx(usual / 4, rel=1e-3)
+    assert "inside smaller" in reports()

@@ -205,3 +205,37 @@ def test_a_batch_makes_the_bytes_of_single_runs(lsgp, parts: Path) -> None:
     assert (parts / "many" / "parts.obj").read_bytes() == (parts / "out.obj").read_bytes()
     reported = json.loads((parts / "many" / "parts.obj.report.json").read_text())
     assert reported["packing"] == single.report()["packing"]
+
+
+def test_islands_inside_have_their_share_of_the_texels(lsgp, tmp_path: Path) -> None:
+    positions, faces = bumpy_ball()
+    inner = [[vertex + len(positions) for vertex in polygon] for polygon in faces]
+    both = np.concatenate([np.asarray(positions), 0.5 * np.asarray(positions)])
+    (tmp_path / "parts.obj").write_text(obj_text(both, [*faces, *inner]))
+
+    def sizes(*options: str) -> tuple[float, float]:
+        report = lsgp(*UNWRAP, "--preset", "paint", *options).report()
+        told = [warning["code"] for warning in report["warnings"]].count("ISLANDS_HIDDEN")
+        assert told == bool(options)
+        triangles, uv, _ = layout(tmp_path / "out.obj")
+        is_inner = (triangles >= len(positions)).any(axis=1)
+        areas = np.abs(np.linalg.det(np.diff(uv, axis=1))) / 2
+        return areas[is_inner].sum(), areas[~is_inner].sum()
+
+    usual, less = sizes(), sizes("--inside", "0.5")
+    assert less[0] / less[1] == pytest.approx(usual[0] / usual[1] / 4, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--preset", "paint", "--inside", "2"), "above 0 and at most 1"),
+        (("--preset", "tile", "--inside", "0.5"), "not seamless"),
+        (("--inside", "0.5"), "--pack tight"),
+        (("--preset", "paint", "--inside", "0.5", "--texel-density", "9", "--texture-size", "1024"), "leave one out"),
+    ],
+)
+def test_sizes_inside_are_refused_where_they_have_no_place(lsgp, parts: Path, options, reason: str) -> None:
+    done = lsgp(*UNWRAP, *options)
+    assert done.code == 2
+    assert reason in done.err
