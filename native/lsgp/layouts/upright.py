@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,19 +62,19 @@ def stand_upright(
     outlines = _outlines(uv, numbers, count)
     if sum(map(len, outlines)) > _MOST_SEGMENTS:
         return uv
-    boxes = island_boxes(uv, numbers)
+    boxes, uv = island_boxes(uv, numbers), uv.copy()
+    triangles = _members(numbers, count)
     for i in np.argsort(-area, kind="stable").tolist():
         quarters = round(left[i] / _QUARTER) % 4
         if not quarters or math.cos(left[i] - quarters * _QUARTER) - math.cos(left[i]) < _LEAST_GAIN:
             continue
-        mine = numbers == i
-        turned = turn_islands(uv[mine], np.zeros(int(mine.sum()), np.int32), [quarters * _QUARTER])
+        mine = triangles[i]
+        turned = turn_islands(uv[mine], np.zeros(len(mine), np.int32), [quarters * _QUARTER])
         (outline,) = _outlines(turned, np.zeros(len(turned), np.int32), 1)
         (box,) = island_boxes(turned, np.zeros(len(turned), np.int32))
-        others = [j for j in range(count) if j != i]
-        if not _fits(outlines[i], boxes[i], outline, box, [(outlines[j], boxes[j]) for j in others], gap):
+        others = [outlines[j] for j in _near(box, boxes, 2 * gap) if j != i]
+        if not _fits(outlines[i], boxes[i], outline, box, others, gap):
             continue
-        uv = uv.copy()
         uv[mine], outlines[i], boxes[i] = turned, outline, box
     return uv
 
@@ -113,7 +114,14 @@ def _outlines(uv: FloatArray, island: IndexArray, count: int) -> list[FloatArray
     rank[order] = np.arange(len(key)) - (np.cumsum(times) - times)[index.ravel()[order]]
     sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
     kept = (rank >= beyond) & (numbers >= 0)
-    return [sides[kept & (numbers == i)] for i in range(count)]
+    return [sides[of] for of in _members(np.where(kept, numbers, -1), count)]
+
+
+def _members(numbers: IndexArray, count: int) -> list[NDArray[np.int64]]:
+    """Of each number from 0 to count - 1 the places that have it, in order."""
+    order = np.argsort(numbers, kind="stable")
+    ends = np.searchsorted(numbers[order], np.arange(count + 1))
+    return [order[begin:end] for begin, end in pairwise(ends.tolist())]
 
 
 def _fits(
@@ -121,15 +129,16 @@ def _fits(
     box_before: FloatArray,
     outline: FloatArray,
     box: FloatArray,
-    others: list[tuple[FloatArray, FloatArray]],
+    others: list[FloatArray],
     margin: float,
 ) -> bool:
-    """Whether an island, turned, is no nearer to others, or to the border of the square, than it may be, or was."""
+    """Whether an island, turned, is no nearer to the outlines of others whose boxes are near, or to the border of the
+    square, than it may be, or was."""
     border = min(margin, _to_border(box_before))
     if not len(outline) or _to_border(box) < border - 1e-12:
         return False
-    for other, other_box in others:
-        if not len(other) or not _near(box, other_box, 2 * margin):
+    for other in others:
+        if not len(other):
             continue
         gap = _gap(outline, other, 2 * margin)
         # It may have been as near before.
@@ -144,8 +153,10 @@ def _to_border(box: FloatArray) -> float:
     return float(min(box[0], box[1], 1 - box[2], 1 - box[3]))
 
 
-def _near(one: FloatArray, other: FloatArray, gap: float) -> bool:
-    return bool((one[:2] - gap < other[2:]).all() and (other[:2] - gap < one[2:]).all())
+def _near(box: FloatArray, others: FloatArray, gap: float) -> list[int]:
+    """Which of the other boxes, (n, 4), are nearer to one than the gap."""
+    is_near = (box[:2] - gap < others[:, 2:]).all(axis=1) & (others[:, :2] - gap < box[2:]).all(axis=1)
+    return np.flatnonzero(is_near).tolist()
 
 
 def _gap(one: FloatArray, other: FloatArray, most: float) -> float:
