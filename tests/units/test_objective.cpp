@@ -137,6 +137,20 @@ TEST_CASE("others are made as long as they may cost less") {
   }
 }
 
+TEST_CASE("a choice is left where its cones take it beyond the bound") {
+  Trial trial;
+  const auto no_map = [](const Progress&) { return Made(); };
+  const auto quality = [](const Made&, const Progress&) { return Quality(); };
+  Quality rival;
+  const Objective::Bound bound(trial.objective, rival);
+  const auto with = [&](const char* name, double expected) {
+    return Candidate{name, [expected] { return expected; }, no_map, quality, {}};
+  };
+  CHECK(trial.objective.choose({with("first", 0), with("another", error_of_estimates)}, {}) == nullptr);
+  REQUIRE(trial.objective.choices().size() == 2);
+  for (const Choice& choice : trial.objective.choices()) CHECK_FALSE(choice.cost);
+}
+
 TEST_CASE("nothing is made that another map outdoes") {
   const std::vector<Told> told{{0.0, 3.0}, {2.5, 1.0}};
   Trial trial;

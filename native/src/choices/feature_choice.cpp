@@ -45,23 +45,19 @@ MapOptions FeatureMaps::unstraightened() const {
   return out;
 }
 
-bool FeatureMaps::is_too_costly(const CompletedCones& cones) const {
-  Quality expected;
-  expected.islands = parts_.count();
-  expected.cones = count_by_area(parts_, cones.cones.vertices);
-  return objective_.is_beyond_bound(expected);
-}
-
 Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryChoice& others,
                                   const Progress& progress) const {
   const auto third = [&](int number) { return share_of(progress, (number - 1) / 3.0, number / 3.0); };
   Made along;
-  if (!is_too_costly(for_features)) along = attempt([&] { return through(for_features, third(1)); });
+  if (!objective_.is_beyond_bound(parts_, for_features, 1)) {
+    along = attempt([&] { return through(for_features, third(1)); });
+  }
   if (along && !runs_along_features(along->result)) along.reset();
   // Creases along the lattice take time: they are tried with the cones that are chosen. Those that are released run
   // along it through other cones, perhaps.
   const bool is_released = along && releases_features(along->result);
   const Made best = others.best(is_released ? options_ : unstraightened(), third(2));
+  if (!best) return along;
   if (!along) return through(best->cones, third(3));
   return best_along(along, best, is_released ? UsualFeatures::as_far_as_they_can : UsualFeatures::not_tried, third(3));
 }
@@ -152,6 +148,7 @@ Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces
   const bool is_seamless = options.of_map.seamless.has_value();
   Made best = is_seamless && for_features ? maps.best_on_lattice(*for_features, cones, choosing)
                                           : cones.best(options, choosing);
+  if (!best) return best;
   if (is_seamless) best = maps.without_creases(best, untimed);
   tell_findings(*best, options.of_map);
   return !is_seamless && for_features ? maps.straighter(*for_features, best, untimed) : best;

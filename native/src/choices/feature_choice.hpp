@@ -15,7 +15,8 @@ struct GivenPlaces {
 
 // Through the given cones and others where these do not suffice: usual ones, symmetric ones, or those with which
 // features can run along u and v, or along the lattice of seamless layouts; of several components, only those have
-// cones for features that gain by them. Its findings are those to be told.
+// cones for features that gain by them. Its findings are those to be told. Null where its cones take it beyond the
+// objective's bound.
 // Throws what `parameterize` and `complete_cones` throw.
 Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces& given, const MapOptions& options,
               Objective& objective, const Progress& progress);
@@ -42,8 +43,6 @@ class FeatureMaps {
   // features: of the other one.
   Made best_along(const Made& along, const Made& usual, UsualFeatures features, const Progress& progress) const;
   Made through(const CompletedCones& cones, const Progress& progress) const { return maps_(cones, options_, progress); }
-  // Whether its map, without stretch, is expected to cost more than another one that was made.
-  bool is_too_costly(const CompletedCones& cones) const;
   // The options without creases along the lattice.
   MapOptions unstraightened() const;
 

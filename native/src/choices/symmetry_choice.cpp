@@ -101,13 +101,13 @@ std::optional<double> SymmetryChoice::expected(Kind kind) const {
 Made SymmetryChoice::make(Kind kind, const Progress& progress) {
   const Progress mapping = share_of(progress, placing, 1);
   switch (kind) {
-    case Kind::symmetric: return through(symmetric_cones(progress), mapping);
+    case Kind::symmetric: return through_first(symmetric_cones(progress), mapping);
     case Kind::free_cuts: {
       CompletedCones cones = *alike_;
       cones.is_symmetric = false;
       return through(cones, progress);
     }
-    case Kind::usual: return through(placed(Placing::usual, progress), mapping);
+    case Kind::usual: return through_first(placed(Placing::usual, progress), mapping);
     case Kind::partly: {
       const PerVertex<char> is_cheaper = vertices_on(surface_.parts, are_cheaper_symmetric());
       CompletedCones cones =
@@ -121,6 +121,17 @@ Made SymmetryChoice::make(Kind kind, const Progress& progress) {
 
 Made SymmetryChoice::through(const CompletedCones& cones, const Progress& progress) const {
   return maps_(cones, options_, progress);
+}
+
+double SymmetryChoice::left_of_stretch() const {
+  return options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
+}
+
+// Of several components some may be better off through these cones.
+Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) const {
+  const bool is_alone = surface_.parts.count() == 1;
+  if (is_alone && objective_.is_beyond_bound(surface_.parts, cones, left_of_stretch())) return nullptr;
+  return through(cones, progress);
 }
 
 CompletedCones SymmetryChoice::placed(Placing how, const Progress& progress) const {
@@ -172,7 +183,7 @@ std::optional<double> SymmetryChoice::expected_of_others(Kind kind, double asymm
   Quality other = like.quality;
   if (other.cuts == 0) return {};  // so there are no other ones
   if (other.asymmetry > asymmetry * share_) return {};
-  const double left = options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
+  const double left = left_of_stretch();
   other.islands = std::max<double>(surface_.parts.count(), islands_of_others * other.islands);
   if (same_cones == nullptr) {
     other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));

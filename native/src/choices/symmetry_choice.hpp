@@ -31,7 +31,8 @@ class SymmetryChoice {
   SymmetryChoice(BorderedSurface& surface, Borrowed<const MapThrough> maps, Borrowed<const GivenCones> given,
                  Symmetry symmetry, Objective& objective);
 
-  // The best map with these options.  Throws what `complete_cones` and `parameterize` throw.
+  // The best map with these options; null where its cones take it beyond the objective's bound.  Throws what
+  // `complete_cones` and `parameterize` throw.
   Made best(const MapOptions& options, const Progress& progress);
 
  private:
@@ -48,6 +49,9 @@ class SymmetryChoice {
   std::optional<double> expected(Kind kind) const;
   Made make(Kind kind, const Progress& progress);
   Made through(const CompletedCones& cones, const Progress& progress) const;
+  // Null beyond the bound.
+  Made through_first(const CompletedCones& cones, const Progress& progress) const;
+  double left_of_stretch() const;  // of that which cones are placed for
   CompletedCones placed(Placing how, const Progress& progress) const;
   CompletedCones symmetric_cones(const Progress& progress);
 

@@ -2,6 +2,7 @@
 #include "measures/objective.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <tuple>
@@ -48,9 +49,10 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   Rank rank;
   ProgressSteps steps(progress);
   std::exception_ptr failure;
+  bool is_beyond = false;  // one of them
   while (const std::optional<Estimate> next = most_promising(candidates)) {
     const double most = std::min(rank.has_defects() ? infinity : rank.cost, bound());
-    const bool is_first = !best && !failure;
+    const bool is_first = !best && !failure && !is_beyond;
     if (!is_first && most < infinity && next->cost - error_of_estimates >= most) break;
     const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
     const Candidate candidate = std::move(*place);
@@ -71,6 +73,12 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
       refuse(Code::out_of_memory);
       continue;
     }
+    const auto name_of_made = [&] { return candidate.name_of_made ? candidate.name_of_made() : candidate.name; };
+    if (!made) {
+      is_beyond = true;
+      choices_.push_back({name_of_made(), next->cost, {}, {}, "is expected to cost more through its cones", false});
+      continue;
+    }
     if (!best_so_far_) best_so_far_ = made;  // measuring may be stopped
     const Quality quality = candidate.quality(made, share_of(step, 1, 1));
     const Rank own{static_cast<double>(quality.left_out), static_cast<double>(quality.defects),
@@ -84,19 +92,24 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
       best_so_far_ = made;
       rank_so_far_ = own;
     }
-    note(candidate.name_of_made ? candidate.name_of_made() : candidate.name, quality, next->cost, is_best);
+    note(name_of_made(), quality, next->cost, is_best);
   }
   for (const Candidate& candidate : candidates) {
     const std::optional<double> expected = candidate.expected();
     if (expected) choices_.push_back({candidate.name, *expected, {}, {}, "is expected to cost more", false});
   }
-  if (!best) std::rethrow_exception(failure);
+  if (!best && failure) std::rethrow_exception(failure);
   tell(progress, 1);
   return best;
 }
 
-bool Objective::is_beyond_bound(Quality expected) const {
+bool Objective::is_beyond_bound(const SurfaceParts& parts, const CompletedCones& cones, double left) const {
   if (!rival_) return false;
+  Quality expected;
+  expected.islands = parts.count();
+  expected.cones = count_by_area(parts, cones.cones.vertices);
+  const bool is_measured = cones.placement && std::isfinite(cones.placement->mapped_l2);
+  if (is_measured) expected.stretch = 100 * left * (cones.placement->mapped_l2 - 1);
   expected.on_lattice = rival_->on_lattice;
   return cost(expected, weights_) - error_of_estimates >= bound();
 }

@@ -26,7 +26,8 @@ struct Candidate {
   std::string name;  // for the trace
   // What it will cost, told without a map, from those made so far; none where it cannot be made, or is one of them.
   std::function<std::optional<double>()> expected;
-  std::function<Made(const Progress&)> make;  // throws Error where it cannot be made
+  // Throws Error where it cannot be made; null where its cones take it beyond the bound.
+  std::function<Made(const Progress&)> make;
   std::function<Quality(const Made&, const Progress&)> quality;
   std::function<std::string()> name_of_made;  // or empty: its name
 };
@@ -48,14 +49,15 @@ class Objective {
 
   // The candidate with the fewest triangles left out, the fewest defects, and the lowest cost. The one that is expected
   // to cost least is made first; then others as long as they may cost less than the best.
-  // Throws CANCELLED, and what the last one throws where none can be made.
+  // Null where all are beyond the bound. Throws CANCELLED, and what the last one throws where none can be made.
   Made choose(std::vector<Candidate> candidates, const Progress& progress);
 
   // Of all maps that were made until now, in any choice; null where there is none.
   const Made& best_so_far() const { return best_so_far_; }
 
-  // Whether a map of this quality, on as good a lattice as the other one, is expected to cost more than the bound.
-  bool is_beyond_bound(Quality expected) const;
+  // Whether a map through these cones is expected to cost more than the bound: with as few islands as components, and
+  // on as good a lattice as the other one.  left: of the stretch that was measured when they were placed.
+  bool is_beyond_bound(const SurfaceParts& parts, const CompletedCones& cones, double left) const;
 
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
