@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/large_surface.hpp"
 #include "unfold/distortion.hpp"
 #include "unfold/jacobians.hpp"
 
@@ -17,7 +18,6 @@ constexpr int newton_steps = 30;
 constexpr double newton_decrease = 1e-5;  // of the energy in a step
 // On large surfaces, whose steps take long: on 70,000 triangles the last three of seven steps lower the energy by less
 // than a ten-thousandth together.
-constexpr Index least_large = 30000;  // triangles
 constexpr double decrease_on_large = 2e-4;
 constexpr double least_weight = 1e-3;  // of the mean, so that no vertex is without any
 

@@ -157,8 +157,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     };
     Made usual = best_for_strokes(on, of_map, mapped, share);
     if (is_pinned) return usual;
-    // What is cut apart on few triangles has no counterpart on all of them.
-    const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && &on == &surface;
+    const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && its_ends.may_cut_open;
     const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
     return best_division(whole, of_map, by, share);
   };

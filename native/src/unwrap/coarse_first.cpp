@@ -10,6 +10,7 @@
 #include "base/progress_monitor.hpp"
 #include "base/progress_share.hpp"
 #include "base/text.hpp"
+#include "mesh/large_surface.hpp"
 #include "unwrap/simplified_surface.hpp"
 
 namespace lsgp {
@@ -19,7 +20,7 @@ namespace {
 // Of six smooth and noisy bodies and scans of 70,000 triangles, maps chosen on 10,000 of these have an L2 stretch of up
 // to 0.2 hundredths more than maps chosen on all, with noise of 15 % of an edge up to 0.8. Surfaces of 40,000 and
 // 90,000 triangles take 0.7 of the time.
-constexpr Index few = 10000, least_large = 30000;
+constexpr Index few = 10000;
 constexpr Index least_reduction = 3;  // where thinning stops earlier, it saves too little
 constexpr double choosing = 0.3;      // of the time, on few triangles
 
@@ -52,6 +53,7 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
     EndsInMap own;
     own.creases = {simplified.from_whole(ends.creases.required), simplified.from_whole(ends.creases.possible),
                    ends.creases.carry_all};
+    own.may_cut_open = false;  // that has no counterpart on all triangles
     Objective on_few(objective.weights(), objective.share());
     const Made best = choose(simplified.surface(), own, on_few, share_of(share, 0, choosing));
     objective.note_all(concat("on ", count, " triangles"), on_few.choices());

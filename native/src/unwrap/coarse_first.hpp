@@ -15,6 +15,7 @@ namespace lsgp {
 struct EndsInMap {
   CreaseBorders creases;
   Tubes tubes;
+  bool may_cut_open = true;  // components without a map
 };
 
 // The best map of a surface by an objective.  Throws what `parameterize` and `complete_cones` throw.
