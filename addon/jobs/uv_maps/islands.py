@@ -147,12 +147,26 @@ def tiles_of(report: Report | None) -> Tiles | None:
     return None if certificate is None else Tiles(certificate["rotation_order"], certificate["cell"])
 
 
-def aligned(parts: Sequence[Map], side: str, tiles: Sequence[Tiles | None]) -> list[ChangedMap]:
+def island_of_face(found: Map, face: int) -> int | None:
+    """The chosen island that has a face of the mesh; None where none has."""
+    islands = found.island[found.chosen & (found.region.triangle_faces == face) & (found.island >= 0)]
+    return int(islands[0]) if len(islands) else None
+
+
+def aligned(
+    parts: Sequence[Map], side: str, tiles: Sequence[Tiles | None], active: tuple[int, int] | None = None
+) -> list[ChangedMap]:
     """The chosen islands of all maps with one side, as of `lsgp.align_islands`, on one line; pinned ones stay, and give
-    the line. Those of seamless layouts move by whole tiles, as near to it as these permit."""
+    the line, unless one is active, which then gives it. Those of seamless layouts move by whole tiles, as near to it as
+    these permit.
+
+    active: the map, and the island of it."""
     boxes = [part.boxes[part.chosen_islands] for part in parts]
-    stays = [np.isin(part.chosen_islands, part.pinned_islands) for part in parts]
-    moves = native.lsgp.align_islands(np.concatenate(boxes), side, fixed=np.concatenate(stays))
+    place, island = active or (-1, -1)
+    stays = np.concatenate([np.isin(part.chosen_islands, part.pinned_islands) for part in parts])
+    is_active = np.concatenate([(part.chosen_islands == island) & (i == place) for i, part in enumerate(parts)])
+    moves = native.lsgp.align_islands(np.concatenate(boxes), side, fixed=stays if active is None else is_active)
+    moves[stays] = 0.0
     outcomes = []
     of_part = np.split(moves, np.cumsum([len(rows) for rows in boxes])[:-1])
     for part, rows, of_tiles in zip(parts, of_part, tiles, strict=True):

@@ -19,8 +19,8 @@ class UV_OT_cone_stitch(IslandOperator, bpy.types.Operator):
     bl_idname = identifiers.STITCH
     bl_label = "Stitch Islands"
     bl_description = (
-        "Join the islands on both sides of the selected edges: the smaller one is moved onto the other, exactly where "
-        "their sides match, and scaled to fit otherwise. Pinned islands stay"
+        "Join the islands on both sides of the selected edges: the one with less area is moved onto the other, exactly "
+        "where their sides match, and scaled to fit otherwise. Pinned islands stay"
     )
     nothing_selected = "No edge is selected; select some that are cut in the UV map"
 

@@ -19,6 +19,7 @@ from ..base.unique_rows import unique_rows
 from ..edge_directions import sides_of_edges
 from ..lattice import island_boxes
 from ..surface import Surface, require_vertices
+from ..triangles import uv_areas
 
 Side = Literal["left", "right", "bottom", "top", "center", "middle"]
 
@@ -165,7 +166,8 @@ class _Joint:
 def stitch_islands(
     surface: Surface, corner_uv: ArrayLike, island: ArrayLike, edges: ArrayLike, *, fixed: ArrayLike = ()
 ) -> StitchedMap:
-    """Join the islands on both sides of cut edges, the longest joint first: of two the one with fewer triangles moves.
+    """Join the islands on both sides of cut edges, the longest joint first: of two the one with less area in the
+    map moves.
 
     corner_uv: (m, 3, 2). island: (m,), -1 for none. edges: (e, 2) vertices; those that are not cut, or borders, count
     for nothing. fixed: islands that do not move. Where both sides match by a rotation and a translation, islands keep
@@ -183,7 +185,7 @@ def stitch_islands(
     joints, within = _joints(surface, uv, island, pairs)
     z = uv[..., 0].ravel() + 1j * uv[..., 1].ravel()
     of_corner = np.repeat(island, 3)
-    sizes = np.bincount(island[island >= 0], minlength=count)
+    sizes = np.bincount(island[island >= 0], uv_areas(uv[island >= 0]), minlength=count)
     group = np.arange(count)
     pinned = np.zeros(len(pairs), bool)
     joined = inexact = 0

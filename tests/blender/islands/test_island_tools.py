@@ -282,6 +282,31 @@ def test_align_puts_sides_of_all_objects_on_one_line():
     assert abs(boxes(first)[0, 3] - boxes(second)[0, 3]) < UV_ROUNDING
 
 
+def test_align_to_the_island_of_the_active_face():
+    first, second = bent_grid("First"), bent_grid("Second")
+    set_uv(second, UvMap(second).uv + np.array([0.7, 0.1]))
+    edit(first, second)
+    with pytest.raises(RuntimeError, match="no selected face is active"):
+        bpy.ops.uv.cone_align(side="LEFT", line="ACTIVE")
+    bpy.context.view_layer.objects.active = second
+    bm = bmesh.from_edit_mesh(second.data)
+    bm.faces.ensure_lookup_table()
+    bm.faces.active = bm.faces[7]
+    before = boxes(second)
+    assert before[0, 0] > boxes(first)[0, 0] + 0.1
+    assert bpy.ops.uv.cone_align(side="LEFT", line="ACTIVE") == {"FINISHED"}
+    assert boxes(second).tolist() == before.tolist()
+    assert abs(boxes(first)[0, 0] - before[0, 0]) < UV_ROUNDING
+    # A pinned island neither gives the line nor moves.
+    edit_off()
+    pin(first, range(49))
+    held = boxes(first)
+    edit(second, first)
+    assert bpy.ops.uv.cone_align(side="TOP", line="ACTIVE") == {"FINISHED"}
+    assert boxes(first).tolist() == held.tolist()
+    assert boxes(second).tolist() == before.tolist()
+
+
 def test_stitch_joins_islands_exactly():
     cube = unwrapped_cube()
     before = UvMap(cube)

@@ -112,6 +112,20 @@ def test_fixed_islands_stay(duck):
     assert held.pinned.any()
 
 
+def test_the_island_with_less_area_is_joined_to_the_other_whatever_their_triangles():
+    """A square of two triangles beside one of half its area with four."""
+    places = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1.5, 0, 0], [1.5, 1, 0], [1.25, 0.5, 0]]
+    flat = lsgp.Surface(places, [[0, 1, 2], [0, 2, 3], [1, 4, 6], [4, 5, 6], [5, 2, 6], [2, 1, 6]])
+    uv = flat.positions[flat.triangles][:, :, :2]
+    island = np.array([0, 0, 1, 1, 1, 1])
+    apart = uv + np.where(island == 1, 3.0, 0.0)[:, None, None]
+    stitched = lsgp.stitch_islands(flat, apart, island, [[1, 2]])
+    assert stitched.moved.tolist() == (island == 1).tolist()
+    np.testing.assert_allclose(stitched.corner_uv, uv, atol=1e-12)
+    fixed = lsgp.stitch_islands(flat, apart, island, [[1, 2]], fixed=[1])
+    assert fixed.moved.tolist() == (island == 0).tolist()
+
+
 def test_islands_that_do_not_match_are_scaled_and_put_together():
     flat = lsgp.Surface(
         [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]]
