@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    import lsgp
+
     from ...core.region import Region
 
 
@@ -24,3 +26,11 @@ def size_in_texels(region: Region, triangles: NDArray[np.bool_] | slice = slice(
     surface = region.surface
     corners = surface.positions[surface.triangles[triangles]]
     return float(np.sqrt(total_area(corners))) * (region.texel_scale or region.density_weight)
+
+
+def mean_tile_size(region: Region, result: lsgp.Result) -> float:
+    """Side of a tile of a seamless layout on the surface, at the size of the mesh: the mean over its area, as the map
+    came out; 0 where it covers nothing."""
+    surface, covered = region.surface, total_area(result.corner_uv[result.solved])
+    area = total_area(surface.positions[surface.triangles[result.solved]])
+    return float(np.sqrt(area / covered)) * result.seamless.cell if covered else 0.0

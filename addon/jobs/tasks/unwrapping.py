@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.errors import Refused
 from . import cells
-from .areas import size_in_texels, total_area
+from .areas import mean_tile_size, size_in_texels
 from .cones_between import told_between
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
@@ -49,7 +49,7 @@ _MOST_UNSAID_SCALE = 2.0
 # Times the stretch that an object has with tiles of its own size, to have those that the others have.
 _PRICE_OF_ONE_SIZE = 1.1
 # Of the chosen size, by which tiles have to differ from it to be told.
-_NOTICEABLE = 0.1
+_NOTICEABLE = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -336,9 +336,8 @@ def _with_size_of_tiles(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Find
     if seamless is None or seamless.tile_size is None:
         return result.warnings
     others = [finding for finding in result.warnings if finding.code != GRID_REFINED]
-    surface, covered = task.region.surface, total_area(result.corner_uv[result.solved])
-    area = total_area(surface.positions[surface.triangles[result.solved]])
-    larger = np.sqrt(area / covered) * seamless.cell / seamless.tile_size - 1 if covered else 0.0
+    size = mean_tile_size(task.region, result)
+    larger = size / seamless.tile_size - 1 if size else 0.0
     if not abs(larger) > _NOTICEABLE:
         return others
     why = "a whole number of them has to fit between cones. Choose smaller tiles, which are rounded less."

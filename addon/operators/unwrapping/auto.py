@@ -27,6 +27,7 @@ from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...jobs.layouts.maps import PackSettings, map_summary, unwrap_and_place, write_map
+from ...jobs.tasks.areas import mean_tile_size
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.unwrapped import Unwrapped
 from ...jobs.tasks.unwrapping import USUAL_TARGET, UnwrapSettings, UnwrapTask, unwrap_task
@@ -395,7 +396,7 @@ class UV_OT_cone_auto_unwrap(
 
 
 def _size_of_tiles(unwrapped: Unwrapped) -> str:
-    """In the world, as "tiles of 0.25 m"."""
+    """In the world, as they came out, as "tiles of 0.25 m"."""
     unit = length_unit(bpy.context.scene)
-    size = unwrapped.result.seamless.tile_size * unwrapped.region.object_scale / unit.size
+    size = mean_tile_size(unwrapped.region, unwrapped.result) * unwrapped.region.object_scale / unit.size
     return f"tiles of {size:.3g} {unit.name}"
