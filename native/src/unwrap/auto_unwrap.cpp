@@ -173,7 +173,14 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   if (is_packed) {
     if (options.inside) scale_hidden(whole, *options.inside, out.result);
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
-    pack(out.result, options.margin, effort, share_of(after_measuring(unlimited), mapping, 1));
+    const Progress packing = share_of(after_measuring(unlimited), mapping, 1);
+    const bool is_usual = effort == PackingEffort::quick && !options.margin && !options.inside;
+    if (is_usual && best->packed_quickly) {
+      out.result.corner_uv = std::move(*best->packed_quickly);
+      tell(packing, 1);
+    } else {
+      pack(out.result, options.margin, effort, packing);
+    }
   }
   return out;
 }
