@@ -338,9 +338,6 @@ class World:
         if how.get("stack"):  # islands lie on others, turned or mirrored as these are
             so = ("overlap", "directions", "flipped")
             found = [fault for fault in found if not any(word in fault for word in so)]
-        if any(warning.code == "REORIENTED" for warning in self.result.warnings):
-            # Bands of one side that are cut in two are not, though they are said to be.
-            found = [fault for fault in found if "flipped" not in fault]
         return ended.told, faults + found
 
     def _shape_a_patch(self, step: Step) -> tuple[str, list[str]]:

@@ -78,7 +78,7 @@ struct AutoUnwrapOptions {
   // and `count`.
   bool symmetric = true;
   // Charts that marked seams bound get no cones, and no cuts unless they are no disks, where their maps are good
-  // without; with SeamMode::exact in any case.
+  // without; with SeamMode::exact in any case. And one-sided components are cut open where no cones are given.
   bool charts = true;
   // Hard surfaces may be cut at their creases, and others there and where tubes end if their maps cost less.
   bool creases = true;

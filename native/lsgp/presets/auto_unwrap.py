@@ -124,7 +124,8 @@ def choose_map(
 ) -> ChosenMap:
     """The map of `auto_unwrap`, which takes the same arguments and raises the same errors.
 
-    charts: whether charts that marked seams bound get cones and cuts only where they need some.
+    charts: whether charts that marked seams bound get cones and cuts only where they need some, and one-sided
+        components are cut open.
     """
     chosen, chosen_weights = preset_options(preset), preset_weights(preset)
     if options is not None:
@@ -194,7 +195,7 @@ def auto_unwrap(
     Marked seams are cut. A chart that they bound gets further cuts only if it is no disk, its L2 stretch exceeds the
     target, or it overlaps itself, and cones only if cuts alone do not help. With `Options.seams` "exact" there are
     neither. With given cones, and in seamless layouts, the texture runs on across the seams of components that get
-    cones.
+    cones. Without given cones, one-sided components are cut open.
 
     cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
         requires, which may be 0; one whose cones cannot take up its curvature gets more.

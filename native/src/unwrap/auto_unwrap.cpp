@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "base/progress_share.hpp"
@@ -11,6 +12,7 @@
 #include "choices/division_choice.hpp"
 #include "choices/feature_choice.hpp"
 #include "choices/marked_seams.hpp"
+#include "choices/one_sided_parts.hpp"
 #include "choices/tube_choice.hpp"
 #include "choices/unfolded_parts.hpp"
 #include "completion/features_wanted.hpp"
@@ -107,18 +109,27 @@ struct GivenForMap {
 // unlimited: goes on when the time is over.
 Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit,
                     const Progress& unlimited) {
-  const Surface& whole = from.surface;
   const Cones& cones = from.cones;
   const Pins& pins = from.pins;
   const Progress& progress = limit.progress();
   const PresetRow preset = row_of(options.preset);
   const Weights weights = options.weights.value_or(preset.weights);
-  require_valid(whole);
-  require_vertices(whole, cones);
+  require_valid(from.surface);
+  require_vertices(from.surface, cones);
   require_valid(weights, options);
   constexpr double measuring = 0.1;  // of the time, where seams are marked
   const MapOptions wanted = options.map.value_or(preset_options(options.preset));
   const GivenCones to_keep{cones, options.count, options.target, {}};
+  OpenedParts opened;
+  std::optional<Surface> two_sided;
+  if (options.charts && to_keep.are_free() && wanted.of_map.seams != SeamMode::exact && pins.corners.empty()) {
+    opened = ends_of_one_sided_parts(from.surface);
+  }
+  if (!opened.triangles.empty()) {
+    two_sided = from.surface;
+    two_sided->borders = joined(two_sided->borders, opened.ends);
+  }
+  const Surface& whole = two_sided ? *two_sided : from.surface;
   const bool has_charts = options.charts || wanted.of_map.seams == SeamMode::exact;
   const AlongSeams along = has_charts ? along_seams(whole, to_keep, wanted, share_of(progress, 0, measuring))
                                       : AlongSeams{whole, to_keep, wanted, {}};
@@ -163,13 +174,15 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   };
   const Made best = best_in_time(limit, objective, of_map, [&] {
     const bool may_be_simplified = is_kept_when_simplified(surface, given, ends, of_map) && !is_pinned;
-    return may_be_simplified ? best_coarse_first({surface, ends, options.target}, choose, objective, of_maps)
-                             : choose(surface, ends, objective, of_maps);
+    return may_be_simplified
+               ? best_coarse_first({surface, ends, options.target}, choose, objective, of_maps)
+               : choose(surface, ends, objective, of_maps);
   });
 
   Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),
                 objective.choices()};
   tell_further_cuts(along.further, out.result);
+  tell_opened(opened, out.result);
   if (is_packed) {
     if (options.inside) scale_hidden(whole, *options.inside, out.result);
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);

@@ -116,7 +116,71 @@ def test_a_part_for_which_no_cones_are_found_does_not_refuse_the_others() -> Non
     assert result.solved.tolist() == [True] * len(ball.triangles) + [False] * len(strip.triangles)
     assert "COMPONENT_SKIPPED" in codes(result.warnings)
     with pytest.raises(lsgp.TopologyError):
-        auto_unwrap(surface(strip))
+        auto_unwrap(surface(strip), [int(strip.triangles[0, 0])])
+
+
+PLATE = meshes.grid()
+ONE_SIDED = {
+    "band": meshes.moebius_strip(),
+    "broad band": meshes.moebius_strip(12, 6),
+    "bottle": meshes.klein_bottle(12, 8),
+    "band and plate": meshes.merge([meshes.moebius_strip(), PLATE]),
+    "plate and bottle": meshes.merge([PLATE, meshes.klein_bottle(12, 8)]),
+}
+
+
+def shuffled(mesh: Mesh, seed: int) -> Mesh:
+    """With its triangles in another order, some of them turned: the first one decides where a component is cut."""
+    rng = np.random.default_rng(seed)
+    triangles = mesh.triangles[rng.permutation(len(mesh.triangles))]
+    turned = rng.random(len(triangles)) < 0.3
+    triangles[turned] = triangles[turned][:, [0, 2, 1]]
+    return mesh._replace(triangles=triangles)
+
+
+@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("name", ONE_SIDED)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_one_sided_components_are_cut_open(preset: str, name: str, seed: int | None) -> None:
+    mesh = ONE_SIDED[name] if seed is None else shuffled(ONE_SIDED[name], seed)
+    given = surface(mesh)
+    result = auto_unwrap(given, preset=preset)
+    assert result.solved.all() and not len(result.flipped)
+    opened = only(result.warnings, "SEAMS_OPENED").elements.indices
+    flat = len(PLATE.triangles) if "plate" in name else 0
+    assert len(opened) == len(mesh.triangles) - flat
+    plain = lsgp.preset_options(preset)
+    assert undeclared_faults(replace(given, borders=result.borders), result, plain) == []
+    # What is said to be turned is what has its corners the other way round.
+    side = result.corner_uv[:, 1:] - result.corner_uv[:, :1]
+    area = side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0]
+    told = [finding.elements.indices for finding in result.warnings if finding.code == "REORIENTED"]
+    assert np.array_equal(np.flatnonzero(area < 0), np.concatenate(told) if told else [])
+
+
+def test_a_one_sided_band_is_cut_across_once() -> None:
+    """Which is the shortest way: no more than twice its breadth, in edges."""
+    across = 3
+    result = auto_unwrap(surface(meshes.moebius_strip(24, across)))
+    assert len(result.borders) <= 2 * across and result.island.max() == 0
+
+
+def test_where_a_one_sided_band_may_not_be_cut_it_is_not() -> None:
+    """Its quads are cut along their sides alone; without any edge to cut it is refused."""
+    mesh = meshes.moebius_strip(16, 2)
+    given = surface(mesh)
+    corners = np.sort(np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]]))
+    edges, count = np.unique(corners, axis=0, return_counts=True)
+    inner = edges[count == 2]
+    of_triangle = np.linalg.norm(mesh.positions[corners[:, 0]] - mesh.positions[corners[:, 1]], axis=1).reshape(3, -1)
+    longest = corners.reshape(3, -1, 2)[of_triangle.argmax(axis=0), np.arange(len(mesh.triangles))]
+    sides = inner[~np.isin(inner @ [len(mesh.positions), 1], longest @ [len(mesh.positions), 1])]
+    assert 0 < len(sides) < len(inner)
+    result = auto_unwrap(replace(given, edges=sides.astype(np.int32)))
+    keys = np.sort(result.borders, axis=1) @ [len(mesh.positions), 1]
+    assert result.solved.all() and np.isin(keys, sides @ [len(mesh.positions), 1]).all()
+    with pytest.raises(lsgp.TopologyError):
+        auto_unwrap(replace(given, edges=np.empty((0, 2), np.int32)))
 
 
 def test_cones_that_no_map_can_have_do_not_keep_others_from_theirs() -> None:
