@@ -172,10 +172,11 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
     return best_division(whole, of_map, by, share);
   };
+  const Progress late = share_of(after_measuring(unlimited), is_packed ? mapping : 1, is_packed ? mapping : 1);
   const Made best = best_in_time(limit, objective, of_map, [&] {
     const bool may_be_simplified = is_kept_when_simplified(surface, given, ends, of_map) && !is_pinned;
     return may_be_simplified
-               ? best_coarse_first({surface, ends, options.target}, choose, objective, of_maps)
+               ? best_coarse_first({surface, ends, options.target, limit, late}, choose, objective, of_maps)
                : choose(surface, ends, objective, of_maps);
   });
 

@@ -24,6 +24,14 @@ constexpr Index few = 10000;
 constexpr Index least_reduction = 3;  // where thinning stops earlier, it saves too little
 constexpr double choosing = 0.3;      // of the time, on few triangles
 
+// Without what makes a map better that is one already, for when the time is over.
+MapOptions made_simply(MapOptions options) {
+  options.of_map.compact = Compactness::off;
+  options.of_map.mirrored_cuts = false;
+  options.of_map.straighten = false;
+  return options;
+}
+
 }  // namespace
 
 bool is_kept_when_simplified(const Surface& surface, const GivenCones& given, const EndsInMap& ends,
@@ -49,23 +57,26 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
   const auto chosen_on_whole = [&](const Progress& share) { return choose(surface, ends, objective, share); };
   if (least_reduction * count > surface.triangles.rows()) return chosen_on_whole(progress);
   std::optional<Quality> expected, found;  // with what is chosen on few triangles, there and on all
+  Objective on_few(objective.weights(), objective.share());
+  const auto on_whole = [&](const MadeMap& best, const MapOptions& how, const Progress& share) {
+    const CompletedCones cones = simplified.on_whole(best.cones);
+    Surface ending = surface;
+    ending.borders = simplified.on_whole(best.surface->surface().borders);
+    const Pins no_pins;
+    const auto bordered = std::make_shared<BorderedSurface>(std::move(ending), nullptr, nullptr);
+    const Made made = maps_of(bordered, no_pins)(cones, how, share);
+    tell_findings(*made, how.of_map);
+    return made;
+  };
   const auto chosen_on_few = [&](const Progress& share) {
     EndsInMap own;
     own.creases = {simplified.from_whole(ends.creases.required), simplified.from_whole(ends.creases.possible),
                    ends.creases.carry_all};
     own.may_cut_open = false;  // that has no counterpart on all triangles
-    Objective on_few(objective.weights(), objective.share());
     const Made best = choose(simplified.surface(), own, on_few, share_of(share, 0, choosing));
     objective.note_all(concat("on ", count, " triangles"), on_few.choices());
     expected = on_few.quality(*best, share_of(share, choosing, choosing));
-    const CompletedCones cones = simplified.on_whole(best->cones);
-    Surface ending = surface;
-    ending.borders = simplified.on_whole(best->surface->surface().borders);
-    const Pins no_pins;
-    const auto bordered = std::make_shared<BorderedSurface>(std::move(ending), nullptr, nullptr);
-    const Made made = maps_of(bordered, no_pins)(cones, best->options, share_of(share, choosing, 1));
-    tell_findings(*made, best->options.of_map);
-    return made;
+    return on_whole(*best, best->options, share_of(share, choosing, 1));
   };
   const auto measure = [&](const Made& made, const Progress& packing) {
     const Quality quality = objective.quality(*made, packing);
@@ -80,9 +91,21 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
     if (!has_defects && !falls_behind) return {};
     return cost(*expected, objective.weights());
   };
-  return objective.choose({{"as chosen on few triangles", [] { return 0.0; }, chosen_on_few, measure, {}},
-                           {"chosen on all triangles", expected_of_whole, chosen_on_whole, measure, {}}},
-                          progress);
+  try {
+    return objective.choose({{"as chosen on few triangles", [] { return 0.0; }, chosen_on_few, measure, {}},
+                             {"chosen on all triangles", expected_of_whole, chosen_on_whole, measure, {}}},
+                            progress);
+  } catch (const Error& error) {
+    const Made& best = on_few.best_so_far();
+    if (!large.limit.has_caused(error) || objective.best_so_far() || !best) throw;
+    Made made = on_whole(*best, made_simply(best->options), large.unlimited);
+    made->result.warnings.push_back(
+        {Code::time_limit,
+         "The time limit was reached while the map was chosen on few of the triangles: this "
+         "is the best one until then, made on all of them after that.",
+         {}});
+    return made;
+  }
 }
 
 }  // namespace lsgp

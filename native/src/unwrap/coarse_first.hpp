@@ -8,6 +8,7 @@
 #include "choices/tube_choice.hpp"
 #include "measures/made_map.hpp"
 #include "measures/objective.hpp"
+#include "unwrap/time_limit.hpp"
 
 namespace lsgp {
 
@@ -31,11 +32,15 @@ struct LargeSurface {
   const Surface& surface;
   const EndsInMap& ends;
   double target;  // of cones, an L2 stretch
+  const TimeLimit& limit;
+  const Progress& unlimited;  // goes on when the time is over
 };
 
 // The map with the cones, borders and divisions that are best on few triangles. Where it leaves out triangles, has
 // further defects, or is stretched by more than both the target and the simplified one, the map is chosen on the whole
-// surface as well, unless it is expected to cost more, and the better one is taken.  Throws what `choose` throws.
+// surface as well, unless it is expected to cost more, and the better one is taken. When the time is over before there
+// is a map of the whole surface, the best one on few triangles is carried over, which takes longer than the limit, and
+// TIME_LIMIT among its findings says so.  Throws what `choose` throws.
 Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objective& objective,
                        const Progress& progress);
 

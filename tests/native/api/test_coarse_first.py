@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import large_meshes
@@ -10,7 +11,7 @@ import lsgp
 import numpy as np
 import pytest
 from lsgp.presets.auto_unwrap import TARGET
-from map_checks import digest, surface
+from map_checks import codes, digest, surface
 from result_check import undeclared_faults
 
 
@@ -74,3 +75,27 @@ def test_surfaces_that_cannot_be_simplified_are_chosen_for_as_they_are() -> None
 
 def test_small_surfaces_are_chosen_for_as_they_are() -> None:
     assert not chosen_on_few(lsgp.auto_unwrap(surface(large_meshes.bumpy(3000))))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("until", [0.05, 0.14, 0.2])
+def test_what_was_chosen_on_few_triangles_is_there_when_the_time_is_over(large: lsgp.Surface, until: float) -> None:
+    """The time is spent where that part of the work is done; choosing on few triangles ends before 0.14 of it."""
+    seconds, reached = 8.0, 0.0
+    begin = time.monotonic()
+
+    def wait_at_the_end(done: float) -> bool:
+        nonlocal reached
+        reached = done
+        if done > until:
+            time.sleep(max(begin + seconds + 0.01 - time.monotonic(), 0))
+        return True
+
+    try:
+        result = lsgp.auto_unwrap(large, seconds=seconds, progress=wait_at_the_end)
+    except lsgp.SolverError as error:
+        assert error.code == "TIME_LIMIT" and reached < 0.14
+        return
+    assert "TIME_LIMIT" in codes(result.warnings)
+    assert result.solved.all() and not len(result.flipped) and not len(result.overlapping)
+    assert undeclared_faults(replace(large, borders=result.borders), result, lsgp.preset_options("paint")) == []
