@@ -51,16 +51,29 @@ std::string told(const TriedMap& map) {
   return concat("angles are off at ", angles, " and the two sides do not match at ", seams, " of cuts");
 }
 
+// What to do where cones are too few: with a corner at every tooth of a comb no number of cones that can be rounded is
+// enough.
+std::string remedy_for(const PlacementTask& task, std::size_t cone_count) {
+  constexpr double sharp = M_PI / 4;
+  const auto corners = static_cast<std::size_t>((task.geometry.angle_defect.array().abs() > sharp).count());
+  if (corners <= cone_count) {
+    return "Place more, mark cones at tips and branches, or cut the component into simpler ones along seams.";
+  }
+  return concat(
+      "It is curved by more than 45 degrees at ", count(corners, "vertex", "vertices"),
+      ", each of which would have to be a cone. Smooth it, or cut it into components with fewer corners along "
+      "seams.");
+}
+
 // Marked cones are kept, and the map reports its defects; other cones with defects are refused.
-void require_right(const VerifiedChoice& choice, bool has_marked) {
+void require_right(const VerifiedChoice& choice, const PlacementTask& task) {
   const TriedMap& map = choice.map;
-  if (!map.is_off() || !map.is_repaired || has_marked) return;
-  throw Error(
-      Code::solver_failed,
-      concat("No cones were found with correct angles and seams on this component: with ",
-             count(choice.cones.vertices.size(), "cone", "cones"), ", ", told(map),
-             ". Place more, mark cones at tips and branches, or cut the component into simpler ones along seams."),
-      {ElementKind::vertices, choice.cones.vertices});
+  if (!map.is_off() || !map.is_repaired || !task.existing.vertices.empty()) return;
+  const std::size_t placed = choice.cones.vertices.size();
+  throw Error(Code::solver_failed,
+              concat("No cones were found with correct angles and seams on this component: with ",
+                     count(placed, "cone", "cones"), ", ", told(map), ". ", remedy_for(task, placed)),
+              {ElementKind::vertices, choice.cones.vertices});
 }
 
 // Repairing the map of a large rough surface takes a minute, and fails.
@@ -177,7 +190,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   if (choice.map.failed) {
     connect_cones(task, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
   }
-  refuse_with_remedy([&] { require_right(choice, !task.existing.vertices.empty()); });
+  refuse_with_remedy([&] { require_right(choice, task); });
   out.mapped_l2 = choice.map.l2;
   if (auto finding = unusable_map(task, options, choice, monitor, out.maps)) findings.push_back(std::move(*finding));
   out.reached = out.mapped_l2 <= options.target;
