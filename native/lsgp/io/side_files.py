@@ -34,7 +34,11 @@ def read_regular(path: Path) -> bytes:
         raise OSError(
             errno.EINVAL, "Not a regular file (to read a mesh from a pipe, let the input be - and redirect it)", path
         )
-    return path.read_bytes()
+    try:
+        return path.read_bytes()
+    except OSError as error:  # from reading, after the file has been opened, without its name
+        error.filename = error.filename or path
+        raise
 
 
 def load_json(path: Path) -> Any:

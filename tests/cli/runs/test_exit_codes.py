@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -432,3 +433,22 @@ def test_shared_bad_cases_through_files(
         assert np.isfinite(uv_of(Path("o.obj"))).all()
         assert (report["flipped"], report["wrong_angle_sums"]) == (0, 0)
     capsys.readouterr()
+
+
+@pytest.mark.parametrize("given", ["mesh", "cones"])
+def test_a_file_that_breaks_off_while_it_is_read_is_named(
+    given: str, cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As on a network or a failing disk: the error of reading does not have the name."""
+    broken = cube_files / {"mesh": "cube.obj", "cones": "corners.json"}[given]
+    read = Path.read_bytes
+
+    def read_bytes(path: Path) -> bytes:
+        if path.name == broken.name:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return read(path)
+
+    monkeypatch.setattr(Path, "read_bytes", read_bytes)
+    monkeypatch.chdir(cube_files)
+    assert main(["unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json"]) == 2
+    assert broken.name in capsys.readouterr().err and not Path("out.obj").exists()
