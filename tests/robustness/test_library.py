@@ -12,6 +12,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "library"))
 
+from library_growth import surface_of
 from library_kinds import KINDS
 from library_shapes import Random, triangles_of, with_defects
 from make_library import mesh_of, write
@@ -35,6 +36,15 @@ def test_defects_are_on_the_share_of_faces_that_was_asked_for(share: float) -> N
     mesh = KINDS["bodies"](Random(1), 1000)
     spoiled = with_defects(mesh, share, Random(2))
     assert spoiled.triangle_count() == mesh.triangle_count() + int(share * mesh.triangle_count())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_growth_is_measured_on_surfaces_that_can_be_unwrapped(kind: str) -> None:
+    """None of their triangles repeats a vertex, and nearly all of the mesh's are among them."""
+    surface = surface_of(kind, 300, 0.05)
+    corners = np.sort(surface.triangles, axis=1)
+    assert (corners[:, 0] < corners[:, 1]).all() and (corners[:, 1] < corners[:, 2]).all()
+    assert len(corners) >= 0.9 * len(triangles_of(KINDS[kind](Random([0xC0DE, 5]), 300)))
 
 
 def test_a_number_gives_the_same_file_every_time(tmp_path: Path) -> None:
