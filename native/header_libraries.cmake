@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Eigen and Spectra, which consist of headers: the system's, those of Python packages, or downloaded.
+include(${CMAKE_CURRENT_LIST_DIR}/install_commands.cmake)
 
 # Downloads archive `name` from the first of the addresses that follow which has it, and unpacks it. folder: where to.
 # failure: empty, or a line about every address that failed. What was unpacked before is not downloaded again.
@@ -32,28 +33,12 @@ endfunction()
 
 # The one command that installs both libraries here. os_release: the file that names the system where there is one.
 function(lsgp_install_command os_release command)
-  set(debian "apt-get install libeigen3-dev libspectra-dev")
-  set(fedora "dnf install eigen3-devel spectra-devel")
-  set(arch "git clone https://aur.archlinux.org/spectra.git && (cd spectra && makepkg -si)")
-  set(homebrew "brew install eigen spectra")
-  set(vcpkg "vcpkg install eigen3 spectra")
-  set(systems "")
-  if(EXISTS ${os_release})
-    file(STRINGS ${os_release} systems REGEX "^ID(_LIKE)?=")
-  endif()
-  if(systems MATCHES "debian|ubuntu")
-    set(found ${debian})
-  elseif(systems MATCHES "fedora|rhel")
-    set(found ${fedora})
-  elseif(systems MATCHES "arch")
-    set(found ${arch})
-  elseif(CMAKE_HOST_APPLE)
-    set(found ${homebrew})
-  elseif(CMAKE_HOST_WIN32)
-    set(found "${vcpkg}, and name vcpkg's toolchain in CMAKE_TOOLCHAIN_FILE")
-  else()
-    set(found "one of: ${debian}; ${fedora}; ${arch}; ${homebrew}; ${vcpkg}")
-  endif()
+  lsgp_command_of_system("${os_release}" found
+    "apt-get install libeigen3-dev libspectra-dev"
+    "dnf install eigen3-devel spectra-devel"
+    "git clone https://aur.archlinux.org/spectra.git && (cd spectra && makepkg -si)"
+    "brew install eigen spectra"
+    "vcpkg install eigen3 spectra, and name vcpkg's toolchain in CMAKE_TOOLCHAIN_FILE")
   set(${command} "${found}" PARENT_SCOPE)
 endfunction()
 

@@ -78,7 +78,7 @@ def by_spyrrow(uv: FloatArray, island: NDArray[np.int32], margin: float) -> Floa
     import spyrrow
 
     z = uv @ [1, 1j]
-    start = np.searchsorted(island, np.arange(island.max() + 1))
+    start = np.unique(island, return_index=True)[1]
     origin = z[start, 0]
     shapes = [outline(z[island == i] - origin[i]) for i in range(len(start))]
     items = [spyrrow.Item(str(i), [(p.real, p.imag) for p in shape], 1, None) for i, shape in enumerate(shapes)]

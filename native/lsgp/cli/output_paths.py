@@ -68,7 +68,7 @@ def _require_writable(path: Path) -> None:
         raise UsageError(f"'{path}' is a folder")
     is_device = target.exists() and not target.is_file()
     if not is_device and not target.parent.is_dir():  # devices of Windows are in no folder
-        raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to")
+        raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to; make it, or name another")
     if is_device and os.name == "nt":
         return  # Windows does not tell
     # A file is replaced through its folder; a device is written to.

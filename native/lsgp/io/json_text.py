@@ -31,7 +31,9 @@ def parse_json(data: bytes, *, finite: bool = False) -> Any:
         content = json.loads(text, object_pairs_hook=_object, **(hooks if finite else {}))
     except RecursionError as error:
         raise JsonError(_TOO_DEEP) from error
-    except (JsonError, UnicodeError, json.JSONDecodeError) as error:
+    except UnicodeError as error:
+        raise JsonError("it has bytes that are no text") from error
+    except (JsonError, json.JSONDecodeError) as error:
         raise JsonError(str(error)) from error
     except ValueError as error:  # of Python's bound on the digits of an integer
         raise JsonError("an integer has thousands of digits") from error
