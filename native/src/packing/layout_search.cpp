@@ -33,6 +33,8 @@ constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long smaller squares are looked for at each effort, or better orders where bodies may not overlap at first, in
 // about nanoseconds: `good`: as long as doubling it fills .005 more of the square.
 constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
+// Of `best`: how often turns nearer to those of the best layout are tried, and how often their angle is halved.
+constexpr int rounds_of_turning = 4, halvings = 4;
 // Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken. Islands of Bake
 // fill .644 of the square, and .637 if only ten and more get all of it.
 constexpr double whole_work_from = 4;
@@ -477,13 +479,45 @@ void LayoutSearch::search(bool also_along_axes) {
   const bool is_quick = options_.effort == PackingEffort::quick;
   if (is_quick && free_.size() > most_quick) return;
   const double part_of_work = is_quick ? std::min(static_cast<double>(free_.size()) / whole_work_from, 1.0) : 1.0;
-  const auto budget = [&](const double(&work)[3]) {
-    return Budget(part_of_work * work[effort],
-                  options_.effort == PackingEffort::best ? options_.seconds : std::nullopt);
+  const bool is_best = options_.effort == PackingEffort::best;
+  const auto budget = [&](const double(&work)[3], int rounds) {
+    const double part = part_of_work / rounds;
+    return Budget(part * work[effort],
+                  is_best && options_.seconds ? std::optional(part * *options_.seconds) : std::nullopt);
   };
-  if (!can_separate()) return vary_order(budget(work_of_orders));
+  if (!can_separate()) return vary_order(budget(work_of_orders, 1));
   take_up_earlier();
-  separate(budget(work_of_separation));
+  const int rounds = is_best ? rounds_of_turning : 1;
+  for (int round = 0; round < rounds; ++round) {
+    const ProgressMonitor::Interval part(monitor_, static_cast<double>(round) / rounds, (round + 1.0) / rounds);
+    if (round > 0) turn_finely(also_along_axes, directions);
+    separate(budget(work_of_separation, rounds));
+  }
+}
+
+// Bodies may also take turns near those that they have in the best layout. directions: of `search`.
+void LayoutSearch::turn_finely(bool also_along_axes, int directions) {
+  const Box room{0, room_to_grow * inner_width() * now_.side / now_.texel, 0,
+                 room_to_grow * inner_height() * now_.side / now_.texel};
+  for (const Index b : free_) {
+    int& pose = now_.found.placed[b].pose;
+    const Complex now = now_.poses[b][pose].turn;
+    Array<Complex> turns{now};
+    // By roots alone, which have the same bytes everywhere.
+    const auto halve = [](Complex& turn) { turn = (1.0 + turn) / std::sqrt(std::norm(1.0 + turn)); };
+    if (bodies_[b].turns == IslandTurns::any && (also_along_axes || !lies_along_axes(bodies_[b].outline))) {
+      Complex step(0, 1);  // a quarter turn
+      for (int count = directions; count > 1; count /= 2) halve(step);
+      for (int halved = 0; halved < halvings; ++halved) {
+        halve(step);
+        turns.push_back(now * step);
+        turns.push_back(now * std::conj(step));
+      }
+    }
+    turns.insert(turns.end(), turns_[b].begin(), turns_[b].end());
+    now_.poses[b] = poses_of(outline_[b], turns, 1 / now_.texel, room);
+    pose = now_.order.pose[b] = 0;
+  }
 }
 
 // Whether other turns of bodies that lie along the axes may be worth it, as of long strips.

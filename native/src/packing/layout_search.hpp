@@ -106,6 +106,7 @@ class LayoutSearch {
   void take_up_earlier();
   bool can_separate() const;
   void separate(const Budget& budget);
+  void turn_finely(bool also_along_axes, int directions);
   void settle(Constructed& found, double gap);
   Order varied(const Order& order);
   int below(int most) { return lsgp::uniform_below(random_, most); }
