@@ -45,13 +45,21 @@ const CutGraph& ComponentSystem::straight_cuts() {
 }
 
 CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const {
-  // Of straight cuts: a tight bend is so much longer outside than inside.
-  constexpr double most_cost = 3;
+  // Of straight cuts: a tight bend is so much longer outside than inside. Their length is compared, not what they cost:
+  // where a tube winds, a row of its quads comes to the front however it is chosen, and a cut that stays out of sight
+  // leaves a strip with ragged sides.
+  constexpr double most_length = 3;
+  const auto length_of = [&](const CutGraph& graph) {
+    double out = 0;
+    for (const Cut& cut : graph.cuts) {
+      for (const Index h : cut.halfedges) out += surface_.geometry.length[h];
+    }
+    return out;
+  };
   CutGraph usual = connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
   if (!interior_cones.empty() || usual.cuts.size() != 1 || !surface_.mesh.is_ring()) return usual;
   std::optional<CutGraph> straight = cut_across(surface_);
-  return straight && cost_of(surface_, *straight) <= most_cost * cost_of(surface_, usual) ? std::move(*straight)
-                                                                                          : usual;
+  return straight && length_of(*straight) <= most_length * length_of(usual) ? std::move(*straight) : usual;
 }
 
 bool ComponentSystem::has_all_cuts() {

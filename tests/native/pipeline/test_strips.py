@@ -94,6 +94,19 @@ def test_a_horn_tapers_evenly(taper: float) -> None:
     assert sides_off_rectangle(mesh, result, np.arange(len(mesh.triangles))) > 0.1
 
 
+def test_a_winding_tube_is_cut_along_one_row_whatever_the_front_sees() -> None:
+    around, along = 16, 60
+    mesh = sweep(np.linspace([0, 0, 0], [0, 20, 0], along + 1), circle(1, around), closed=False, caps=False)
+    ring = np.arange(len(mesh.positions)) // around
+    angle = 2 * np.pi * (np.arange(len(ring)) % around) / around + 0.1 * ring
+    places = np.stack([np.cos(angle), 0.35 * ring, np.sin(angle)], axis=1)
+    tube = of_quads(mesh._replace(positions=places), around * along)
+    tube = replace(tube, cut_costs=lsgp.cut_costs(tube, (0, 0, 1)))
+    cuts = lsgp.parameterize(tube, [], None, STRIPS).cut_edges
+    assert len(cuts) == along
+    assert len(np.unique(cuts % around)) == 1
+
+
 def test_the_texture_runs_on_across_the_cut_without_turning() -> None:
     mesh, result = unwrapped(of_pipe(12, 40, 1.5, False))
     assert result.seams.sister_ratio_max < 1 + 1e-9 and result.seams.rotation_residual < 1e-9
