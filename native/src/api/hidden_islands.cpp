@@ -106,7 +106,7 @@ struct Samples {
         of_island[element(island, f)].push_back(at);
       };
       for (int i = 0; i < rows; ++i) {
-        for (int j = 0; i + j < rows; ++j) {
+        for (int j = 0; j < rows - i; ++j) {
           point((i + 1 / 3.0) / rows, (j + 1 / 3.0) / rows);
           if (i + j + 1 < rows) point((i + 2 / 3.0) / rows, (j + 2 / 3.0) / rows);
         }

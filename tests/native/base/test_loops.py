@@ -260,7 +260,10 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "plane/aabb_tree.hpp": [("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN)],
+    "plane/aabb_tree.hpp": [
+        ("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN),
+        ("while (!open.empty())", "nodes of a finite tree, each once", SHORT),
+    ],
     "plane/boundary_polygon.hpp": [
         ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
         ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
@@ -516,6 +519,7 @@ REVIEWED = {
             "a fixed number of layouts",
             WITHIN,
         ),
+        ("for (int count = directions; count > 1; count /= 2)", "halves a constant", SHORT),
         ("while (now_.side > near * low)", "each round halves what is between the two", WITHIN),
         *[
             (
