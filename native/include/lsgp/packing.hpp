@@ -70,6 +70,6 @@ LSGP_API double usual_margin(const CornerUv& corner_uv, const std::vector<Index>
 // directions, leave the surface, which hides what is behind it from both sides.  island: (m) as above.
 // Throws what `parameterize` throws for surfaces, WRONG_PARAMETER and INDEX_OUT_OF_RANGE.
 LSGP_API std::vector<Index> hidden_islands(const Surface& surface, const std::vector<Index>& island,
-                                          const Progress& progress = {});
+                                           const Progress& progress = {});
 
 }  // namespace lsgp
