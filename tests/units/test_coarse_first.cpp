@@ -67,7 +67,9 @@ struct Chooser {
 Made chosen(const Surface& surface, Chooser& chooser) {
   Objective objective(preset_weights(Preset::paint), {});
   const EndsInMap nowhere;
-  return best_coarse_first({surface, nowhere, 1.05}, std::ref(chooser), objective, {});
+  const Progress untold;
+  const TimeLimit none({}, untold);
+  return best_coarse_first({surface, nowhere, 1.05, none, untold}, std::ref(chooser), objective, untold);
 }
 
 }  // namespace
