@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -115,6 +116,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(arguments: list[str]) -> int:
     parser = _parser()
     try:
+        _require_words(parser, arguments)
         args, unknown = parser.parse_known_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
         if unknown:
             vars(args).get("parser", parser).refuse_unknown(unknown)
@@ -126,6 +128,17 @@ def _run(arguments: list[str]) -> int:
         say(sys.stdout, f"lsgp {__version__}" if args.version else formats_table())
         return OK
     return args.run(args)
+
+
+def _require_words(parser: _Parser, arguments: list[str]) -> None:
+    """End with an error where a program passes what no shell can."""
+    for word in arguments:
+        try:
+            has_text = b"\0" not in os.fsencode(word)
+        except UnicodeEncodeError:
+            has_text = False
+        if not has_text:
+            parser.error(f"{word!a} has a character that no path can have; leave it out")
 
 
 def _parser() -> _Parser:
