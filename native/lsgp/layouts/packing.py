@@ -62,8 +62,8 @@ class Packing:
         `pack_islands`. stack: islands of one shape are stacked, as by `find_stacks`; "mirrored":
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
         up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
-        inside: the texel density of islands that nothing outside can see in that of the others, above 0 and at most 1;
-        None: the same.
+        inside: of tight layouts, the texel density of islands that nothing outside can see relative to that of the
+        others, above 0 and at most 1; None: the same.
     """
 
     pack: Pack | None = None
@@ -86,20 +86,18 @@ class Packing:
                 arguments.refuse("margin", self.margin, 'pass it with pack="tight", or leave it out')
         if self.udim is not None:
             tile_count(self.udim)
-            if self.pack == SHELVES:
-                arguments.refuse("udim", self.udim, 'pass it with pack="tight", or leave it out')
         if self.stack is not None:
             arguments.require_choice("stack", self.stack, get_args(Stack))
-            if self.pack == SHELVES:
-                arguments.refuse("stack", self.stack, 'pass it with pack="tight", or leave it out')
         if self.effort is not None:
             arguments.require_choice("effort", self.effort, get_args(Effort))
-            if self.pack == SHELVES:
-                arguments.refuse("effort", self.effort, 'pass it with pack="tight", or leave it out')
         if self.inside is not None:
             remedy = "pass a share of the texel density, above 0 and at most 1"
             if not 0 < arguments.number("inside", self.inside, remedy) <= 1:
                 arguments.refuse("inside", self.inside, remedy)
+        for name in ("udim", "stack", "effort", "inside"):
+            value = getattr(self, name)
+            if value is not None and self.pack == SHELVES:
+                arguments.refuse(name, value, 'pass it with pack="tight", or leave it out')
 
     @property
     def is_tight(self) -> bool:

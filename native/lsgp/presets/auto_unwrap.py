@@ -195,7 +195,10 @@ def auto_unwrap(
     Marked seams are cut. A chart that they bound gets further cuts only if it is no disk, its L2 stretch exceeds the
     target, or it overlaps itself, and cones only if cuts alone do not help. With `Options.seams` "exact" there are
     neither. With given cones, and in seamless layouts, the texture runs on across the seams of components that get
-    cones. Without given cones, one-sided components are cut open.
+    cones.
+
+    One-sided components are cut open, so that they get a map, where neither cones, `count` nor pins are given and
+    `Options.seams` is not "exact"; otherwise they are refused, unless marked seams open them.
 
     cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
@@ -217,9 +220,9 @@ def auto_unwrap(
         `Options.square_share`; not with texels, which have their own.
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
-    inside: the texel density, in that of the others, of islands that nothing outside can see, for instance 0.25: no
-        ray from them leaves the surface, which hides what is behind it from both sides. ISLANDS_HIDDEN among the
-        warnings says which. None: the same. Not with texels, nor in layouts that are never packed.
+    inside: in tight layouts, the texel density of islands that nothing outside can see, relative to that of the
+        others, for instance 0.25: no ray from them leaves the surface, which hides what is behind it from both sides.
+        ISLANDS_HIDDEN among the warnings says which. None: the same. Not with texels.
     effort: how long a tight layout is looked for, as of `pack_islands`; None: "quick" with "paint", else "good".
     seconds: after so many the best map made until then is packed quickly, and TIME_LIMIT among the warnings says so; it
         is raised where no map was made in time. None: no limit. Results depend on the machine then.

@@ -460,8 +460,8 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         "--inside",
         metavar="F",
         type=_inside_option,
-        help="texel density of islands that nothing outside can see, in that of the others, for instance 0.25; at most "
-        "1 (default: the same)",
+        help="in tight layouts, texel density of islands that nothing outside can see, relative to that of the others, "
+        "for instance 0.25; at most 1 (default: the same)",
     )
     unwrap.add_argument(
         "--effort",
@@ -617,9 +617,7 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
         return None
     if args.inside is not None and args.texel_density is not None:
         raise UsageError("--inside and --texel-density both say how large islands are; leave one out")
-    if args.inside is not None and not (args.pack or args.preset or args.udim):
-        raise UsageError("--inside is for layouts that are packed; add --pack tight")
-    for name in ("stack", "effort"):
+    for name in ("stack", "inside", "effort"):
         is_given = getattr(args, name) is not None
         if is_given and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
             raise UsageError(f"--{name} is for tight layouts; add --pack tight")

@@ -232,6 +232,8 @@ def test_islands_inside_have_their_share_of_the_texels(lsgp, tmp_path: Path) -> 
         (("--preset", "paint", "--inside", "2"), "above 0 and at most 1"),
         (("--preset", "tile", "--inside", "0.5"), "not seamless"),
         (("--inside", "0.5"), "--pack tight"),
+        (("--pack", "shelves", "--inside", "0.5"), "--pack tight"),
+        (("--preset", "paint", "--pack", "shelves", "--inside", "0.5"), "--pack tight"),
         (("--preset", "paint", "--inside", "0.5", "--texel-density", "9", "--texture-size", "1024"), "leave one out"),
     ],
 )

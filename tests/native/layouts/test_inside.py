@@ -105,7 +105,13 @@ def test_without_hidden_islands_nothing_changes():
 
 @pytest.mark.parametrize(
     "others",
-    [{"inside": 0}, {"inside": 1.5}, {"inside": float("nan")}, {"inside": 0.5, "preset": "tile"}],
+    [
+        {"inside": 0},
+        {"inside": 1.5},
+        {"inside": float("nan")},
+        {"inside": 0.5, "preset": "tile"},
+        {"inside": 0.5, "pack": "shelves"},
+    ],
 )
 def test_shares_that_are_none_are_refused(others):
     with pytest.raises(lsgp.InputError, match="inside"):
