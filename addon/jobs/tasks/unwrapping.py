@@ -338,7 +338,7 @@ def _with_size_of_tiles(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Find
     others = [finding for finding in result.warnings if finding.code != GRID_REFINED]
     size = mean_tile_size(task.region, result)
     larger = size / seamless.tile_size - 1 if size else 0.0
-    if not abs(larger) > _NOTICEABLE:
+    if not abs(larger) >= _NOTICEABLE:
         return others
     why = "a whole number of them has to fit between cones. Choose smaller tiles, which are rounded less."
     if len(others) < len(result.warnings):
