@@ -165,7 +165,7 @@ def _layouts(
     """The coordinates of each map as they are written, and findings about them: packed together with a preset,
     then at a texel density if that is asked for.  Raises InputError, Refused."""
     unwrap_options = native.part("run.unwrap_options")
-    layouts = [unwrapped.corner_uv for unwrapped in solved]
+    layouts, findings = [unwrapped.corner_uv for unwrapped in solved], []
     packing = unwrap_options.packing_of(args)
     if args.preset is not None or packing is not None:
         pack = PackSettings(
@@ -178,7 +178,8 @@ def _layouts(
         inside = 1.0 if args.inside is None else args.inside
         placed = placed_maps(solved, replace(pack, stack=args.stack, effort=effort, inside=inside))
         layouts = [unwrapped.corner_uv for unwrapped in placed]
-    texels, findings = unwrap_options.texel_layout(args), []
+        findings = [finding for unwrapped in placed for finding in unwrapped.placing]
+    texels = unwrap_options.texel_layout(args)
     if texels is not None:
         layouts, findings = at_density(solved, layouts, texels, share=args.preset is not None)
     for unwrapped, corner_uv in zip(solved, layouts, strict=True):

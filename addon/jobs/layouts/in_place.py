@@ -34,14 +34,19 @@ def place_of(solved: Sequence[Unwrapped], surroundings: Surroundings) -> Place:
 
 
 def at_density(
-    solved: Sequence[Unwrapped], parts: Sequence[Islands], surroundings: Surroundings
+    solved: Sequence[Unwrapped],
+    parts: Sequence[Islands],
+    surroundings: Surroundings,
+    hidden: Sequence[NDArray[np.bool_]] | None = None,
 ) -> tuple[Place, list[Islands]]:
     """The place of maps, and their islands, which have one density, at that which their faces had; that of the others,
-    if they had none."""
+    if they had none.  hidden: (m,) of each map, triangles whose density has no say, as it may be less."""
     place = place_of(solved, surroundings)
     wanted = 0.0
     if place.box is not None:
         kept = [np.isfinite(u.region.corner_uv).all(axis=(1, 2)) & u.result.solved for u in solved]
+        if hidden is not None:
+            kept = [of & ~is_hidden for of, is_hidden in zip(kept, hidden, strict=True)]
         covered = sum(total_area(u.region.corner_uv[of]) for u, of in zip(solved, kept, strict=True))
         size = np.linalg.norm([size_in_texels(u.region, of) for u, of in zip(solved, kept, strict=True)])
         wanted = np.sqrt(covered) / size if size > 0 else 0.0

@@ -27,7 +27,7 @@ from ..tasks.unwrapping import UnwrapTask
 from ..uv_maps.texels import map_density
 from . import in_place, packing, upright
 from .densities import packed_at_density
-from .inside import with_less_inside
+from .inside import find_hidden, with_less_inside
 from .remembered import unwrap_all_once
 from .stacking import packed_in_stacks
 
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 # Of the time of an unwrap, that of packing.
 _PACKING_SHARE = {"good": 0.2, "best": 0.9}
+# Of the time of packing, where islands are looked for that nothing outside can see.
+_LOOKING_INSIDE = 0.3
 
 TEXTURE_SIZE = 1024
 """Side, in texels, of the texture for which errors of seams are reported."""
@@ -52,7 +54,8 @@ class PackSettings:
     texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
     islands of one shape are stacked, as of `lsgp.auto_unwrap`; not at a texel density and not by cells. effort: as of
-    `lsgp.pack_islands`. inside: as of `lsgp.auto_unwrap`, object by object, where the square is filled.
+    `lsgp.pack_islands`. inside: as of `lsgp.auto_unwrap`, among the unwrapped faces of each object; not at a texel
+    density.
     surroundings: of a selection that is placed as by `packing.pack_in_place`; None: all faces are unwrapped, or
     islands are packed as if they were all.
     """
@@ -112,13 +115,19 @@ def placed_maps(
         place = None if settings.surroundings is None else in_place.place_of(solved, settings.surroundings)
         return _at(solved, packed_at_density(solved, alike, settings.texels, unit=settings.unit, place=place, **how))
     margin, notes = settings.margin, []
+    hidden = None
     if settings.inside < 1:
-        parts, hidden = with_less_inside(solved, parts, settings.inside)
-        if hidden:
-            notes.append(f"{counted(hidden, 'island')} inside smaller")
+        share_of = native.part("base.progress").share_of
+        hidden = find_hidden(solved, parts, share_of(progress, 0.0, _LOOKING_INSIDE))
+        how["progress"] = share_of(progress, _LOOKING_INSIDE, 1.0)
+    if settings.surroundings is not None:
+        place, parts = in_place.at_density(solved, parts, settings.surroundings, hidden)
+    if hidden is not None:
+        solved, parts, count = with_less_inside(solved, parts, hidden, settings.inside)
+        if count:
+            notes.append(f"{counted(count, 'island')} inside smaller")
     pack = partial(packing.pack, margin=margin, udim=settings.udim, **how)
     if settings.surroundings is not None:
-        place, parts = in_place.at_density(solved, parts, settings.surroundings)
         pack = partial(packing.pack_in_place, margin=margin, place=place, **how)
     if settings.stack is None:
         packed = pack(parts)

@@ -23,8 +23,9 @@ class Unwrapped:
 
     corner_uv: (m, 3, 2) float64 as to be written, NaN where not solved. pinned: (m, 3) bool, the corners that kept
     their UVs. aspect: as in the task. step: side of the cells by which islands of a seamless layout may be moved; None
-    for other layouts. note: what is to be told of its place. square_used: the part of
-    the UV square that all maps cover that are packed with this one; None: they are not, or into something else.
+    for other layouts. note: what is to be told of its place. placing: warnings about it; an artist is told by the
+    note. square_used: the part of the UV square that all maps cover that are packed with this one; None: they are not,
+    or into something else.
     """
 
     region: Region
@@ -34,6 +35,7 @@ class Unwrapped:
     aspect: float
     step: float | None
     note: str = ""
+    placing: tuple[lsgp.Finding, ...] = ()
     square_used: float | None = None
 
     @property

@@ -153,8 +153,8 @@ class UV_OT_cone_auto_unwrap(
     )
     inside: bpy.props.FloatProperty(
         name="Inside",
-        description="Size of islands that nothing outside their object can see, in that of the others, so that these "
-        "become larger; 1: the same. Not at a texel density",
+        description="Size of islands that nothing outside can see, as far as the unwrapped faces of their object hide "
+        "them, relative to that of the others, so that the others become larger; 1: the same. Not at a texel density",
         default=1.0,
         min=0.01,
         max=1.0,

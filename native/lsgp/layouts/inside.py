@@ -43,11 +43,15 @@ def with_less_inside(surface: Surface, result: Result, share: float, progress: P
     hidden = find_hidden(surface, result.island, progress)
     if not hidden.any():
         return result
-    count = len(np.unique(result.island[hidden]))
+    uv = made_smaller(result.corner_uv, result.island, hidden, share)
+    return replace(result, corner_uv=uv, warnings=[*result.warnings, hidden_finding(result.island, hidden, share)])
+
+
+def hidden_finding(island: IndexArray, is_hidden: NDArray[np.bool_], share: float) -> Finding:
+    """ISLANDS_HIDDEN. is_hidden: (m,), some of the triangles."""
+    count = len(np.unique(island[is_hidden]))
     message = (
-        f"Of {int(result.island.max()) + 1} islands {count} {'lies' if count == 1 else 'lie'} where nothing outside "
+        f"Of {int(island.max()) + 1} islands {count} {'lies' if count == 1 else 'lie'} where nothing outside "
         f"can see {'it' if count == 1 else 'them'}, with {share:g} of the texel density."
     )
-    finding = Finding("ISLANDS_HIDDEN", message, Elements("triangles", np.flatnonzero(hidden).astype(np.int32)))
-    uv = made_smaller(result.corner_uv, result.island, hidden, share)
-    return replace(result, corner_uv=uv, warnings=[*result.warnings, finding])
+    return Finding("ISLANDS_HIDDEN", message, Elements("triangles", np.flatnonzero(is_hidden).astype(np.int32)))

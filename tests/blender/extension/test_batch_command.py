@@ -227,6 +227,22 @@ def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses
 
 
 @pytest.mark.one_blender
+def test_islands_inside_that_are_made_smaller_are_a_warning(tmp_path):
+    outer, inner = add_ball("Outer"), add_ball("Inner")
+    triangles = sum(len(face.vertices) - 2 for face in inner.data.polygons)
+    inner.data.transform(Matrix.Translation((-5, 0, 0)) @ Matrix.Scale(0.5, 4))  # where joining puts the other
+    joined(outer, inner)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "balls.blend"), copy=True)
+    clear()
+    (tmp_path / "list.txt").write_text("balls.blend\n")
+    options = ["--no-pictures", "--preset", "paint"]
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "usual", *options) == 0
+    assert "ISLANDS_HIDDEN" not in lines_of(tmp_path / "usual")[0]["warnings"]
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "less", *options, "--inside", "0.5") == 0
+    assert lines_of(tmp_path / "less")[0]["warnings"]["ISLANDS_HIDDEN"] == triangles
+
+
+@pytest.mark.one_blender
 def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     (library / "cones.json").write_text('{"cones": [0, 1, 2]}')
     (library / "list.txt").write_text("two.blend\n")

@@ -81,6 +81,29 @@ def test_selected_islands_stay_in_their_place_at_their_density(work, selected):
     require_in_place(obj, faces, before, old_area)
 
 
+@pytest.mark.one_blender
+def test_what_is_hidden_in_a_selection_gets_smaller_and_the_rest_keeps_its_density():
+    """Of a ball in a ball, beside squares that are not selected; once more, too."""
+    obj = add_parts(2)
+    for radius in (1.0, 0.5):
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=radius, location=(20.0, 0.0, 0.0))
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.join()
+    middle = np.array([20.0, 0.0, 0.0]) - np.array(obj.location)
+    distance = np.array([np.linalg.norm(np.array(face.center) - middle) for face in obj.data.polygons])
+    inner, outer = np.flatnonzero(distance < 0.7), np.flatnonzero((distance > 0.7) & (distance < 2))
+    assert len(inner) == len(outer) > 0
+    assert bpy.ops.uv.cone_auto_unwrap(texture_size=str(TEXELS), margin=MARGIN) == {"FINISHED"}
+    before = area(obj, outer), area(obj, inner)
+    edit(obj)
+    select_elements(obj, "faces", [*outer.tolist(), *inner.tolist()])
+    for _ in range(2):
+        assert bpy.ops.uv.cone_auto_unwrap(texture_size=str(TEXELS), margin=MARGIN, inside=0.5) == {"FINISHED"}
+        assert area(obj, outer) == pytest.approx(before[0], rel=1e-3)
+        assert area(obj, inner) == pytest.approx(before[1] / 4, rel=1e-3)
+
+
 def test_islands_of_half_the_size_stay_there_and_get_no_larger():
     obj, faces = begin((1,))
     bpy.ops.object.mode_set(mode="OBJECT")
