@@ -89,8 +89,12 @@ def unwrap(folder: Path, how: int, mesh: Path) -> None:
         face = np.repeat(np.arange(len(after.sizes)), after.sizes)
         bare = np.unique(face[np.isnan(after.corner_uv).any(axis=1)])
         count = sum(count for count, _ in said.values())
-        had_some = before.corner_uv is not None and np.isfinite(before.corner_uv).any()
-        assert count >= len(bare) if had_some else count == len(bare), told  # faces keep those that they had
+        was_bare = np.arange(len(before.sizes))
+        if before.corner_uv is not None:
+            was_bare = np.unique(face[np.isnan(before.corner_uv).any(axis=1)])
+        assert np.isin(bare, was_bare).all(), told
+        # Faces keep those that they had.
+        assert count == len(bare) if len(was_bare) == len(before.sizes) else count >= len(bare), told
         assert (code == 4) == (False in said) and all(0 <= part <= 100 for _, part in said.values())
 
 
