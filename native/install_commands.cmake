@@ -30,7 +30,7 @@ function(lsgp_require_compiler)
   if(DEFINED CMAKE_CXX_COMPILER OR NOT CMAKE_HOST_UNIX OR CMAKE_TOOLCHAIN_FILE OR DEFINED ENV{CMAKE_TOOLCHAIN_FILE})
     return()
   endif()
-  set(names c++ g++ clang++ icpx)
+  set(names c++ CC g++ aCC xlC icpx icpc clang++)  # what CMake looks for
   if(DEFINED ENV{CXX})
     separate_arguments(words UNIX_COMMAND "$ENV{CXX}")
     list(GET words 0 names)
@@ -46,11 +46,13 @@ function(lsgp_require_compiler)
   endif()
 endfunction()
 
-# An error that says what installs Python's headers, after a search for Python in which they were missing.
+# An error that says what installs Python's headers, after a search for Python in which they were missing; CMake's own
+# where there is no interpreter either.
 function(lsgp_require_python_headers)
   if(Python_FOUND)
     return()
   endif()
+  find_package(Python COMPONENTS Interpreter REQUIRED)
   lsgp_command_of_system(/etc/os-release command "apt-get install python3-dev" "dnf install python3-devel"
     "pacman -S python" "brew install python" "Python's installer")
   message(FATAL_ERROR "The headers of Python (Python.h) are needed to build its module, and they are not installed.\n"
