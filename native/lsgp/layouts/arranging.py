@@ -166,8 +166,8 @@ class _Joint:
 def stitch_islands(
     surface: Surface, corner_uv: ArrayLike, island: ArrayLike, edges: ArrayLike, *, fixed: ArrayLike = ()
 ) -> StitchedMap:
-    """Join the islands on both sides of cut edges, the longest joint first: of two the one with less area in the
-    map moves.
+    """Join the islands on both sides of cut edges, the longest joint first: of two the one with less area in the map
+    moves.
 
     corner_uv: (m, 3, 2). island: (m,), -1 for none. edges: (e, 2) vertices; those that are not cut, or borders, count
     for nothing. fixed: islands that do not move. Where both sides match by a rotation and a translation, islands keep
