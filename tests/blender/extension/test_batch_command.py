@@ -178,7 +178,8 @@ def test_a_file_that_is_saved_while_it_is_unwrapped_in_place_is_not_replaced(tmp
 
 
 def test_faces_without_coordinates_are_counted(tmp_path):
-    """A band that is one-sided is refused as an object of its own, and cut open beside a cube in one object."""
+    """A band that is one-sided is refused where a number of cones is given, and cut open otherwise, as an object of its
+    own and beside a cube in one object."""
     turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     edge = [
         np.stack([(2 + s * np.cos(turn / 2)) * np.cos(turn), (2 + s * np.cos(turn / 2)) * np.sin(turn)], axis=1)
@@ -187,27 +188,27 @@ def test_faces_without_coordinates_are_counted(tmp_path):
     height = [s * np.sin(turn / 2) for s in (-0.5, 0.5)]
     places = np.concatenate([np.column_stack([xy, z]) for xy, z in zip(edge, height, strict=True)])
     faces = [(i, i + 1, i + 25, i + 24) for i in range(23)] + [(23, 24, 0, 47)]
-    missing, area = {"joined": 0, "apart": len(faces)}, {"joined": 0.0}
-    for name in missing:
+    for name in ("joined", "apart"):
         clear()
         cube = add_cube("Cube", cuts=1)
         band = bpy.data.meshes.new("Band")
         band.from_pydata(places.tolist(), [], faces)
         band_object = bpy.data.objects.new("Band", band)
         bpy.context.collection.objects.link(band_object)
+        band_area = sum(face.area for face in band.polygons)
+        area = 100 * band_area / (band_area + sum(face.area for face in cube.data.polygons))
         if name == "joined":
             joined(cube, band_object)
-        else:
-            band_area = sum(face.area for face in band.polygons)
-            area[name] = 100 * band_area / (band_area + sum(face.area for face in cube.data.polygons))
         bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / f"{name}.blend"), copy=True)
     clear()
     (tmp_path / "list.txt").write_text("joined.blend\napart.blend\n")
-    assert run(tmp_path / "list.txt", "--out", tmp_path / "out", "--no-pictures", "--jobs", 1) == 4
+    options = ["--no-pictures", "--jobs", 1]
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "open", *options) == 0
+    assert [line["missing_faces"] for line in lines_of(tmp_path / "open")] == [0, 0]
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "out", *options, "--cones", "auto:8") == 4
     for line in lines_of(tmp_path / "out"):
-        name = line["asset"].split(".")[0]
-        assert (line["status"], line["missing_faces"]) == ("ok", missing[name])
-        assert line["missing_area_percent"] == pytest.approx(area[name], rel=0.05)
+        assert (line["status"], line["missing_faces"]) == ("ok", len(faces))
+        assert line["missing_area_percent"] == pytest.approx(area, rel=0.05)
 
 
 @pytest.mark.one_blender
