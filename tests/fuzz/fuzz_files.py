@@ -27,6 +27,7 @@ with atheris.instrument_imports(include=["lsgp"]):
     from lsgp.batch.records import Record, ending
     from lsgp.cli import main
     from lsgp.io.mesh_files import read_mesh
+    from lsgp.io.mesh_formats import OBJ, input_format
 
 import numpy as np
 from file_mutations import mutated
@@ -90,10 +91,10 @@ def unwrap(folder: Path, how: int, mesh: Path) -> None:
         bare = np.unique(face[np.isnan(after.corner_uv).any(axis=1)])
         count = sum(count for count, _ in said.values())
         was_bare = np.arange(len(before.sizes))
-        if before.corner_uv is not None:
+        if before.corner_uv is not None and input_format(mesh, mesh.read_bytes()) == OBJ:  # is edited
             was_bare = np.unique(face[np.isnan(before.corner_uv).any(axis=1)])
+        # Faces without new coordinates keep those that they had.
         assert np.isin(bare, was_bare).all(), told
-        # Faces keep those that they had.
         assert count == len(bare) if len(was_bare) == len(before.sizes) else count >= len(bare), told
         assert (code == 4) == (False in said) and all(0 <= part <= 100 for _, part in said.values())
 
