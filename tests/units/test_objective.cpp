@@ -151,6 +151,21 @@ TEST_CASE("a choice is left where its cones take it beyond the bound") {
   for (const Choice& choice : trial.objective.choices()) CHECK_FALSE(choice.cost);
 }
 
+TEST_CASE("beyond the bound is what costs more than another map by more than estimates are off") {
+  Objective objective{Weights{}, {}};
+  Quality rival;
+  rival.stretch = 2;
+  rival.on_lattice = -10;
+  Quality other = rival;
+  CHECK_FALSE(objective.is_beyond_bound(other));  // there is none
+  const Objective::Bound bound(objective, rival, Objective::Bound::Of::all);
+  CHECK(objective.bounds_first());
+  other.stretch = 2 + error_of_estimates / 2;
+  CHECK_FALSE(objective.is_beyond_bound(other));
+  other.stretch = 2 + 2 * error_of_estimates;
+  CHECK(objective.is_beyond_bound(other));
+}
+
 TEST_CASE("nothing is made that another map outdoes") {
   const std::vector<Told> told{{0.0, 3.0}, {2.5, 1.0}};
   Trial trial;

@@ -18,6 +18,7 @@ namespace lsgp {
 
 namespace {
 
+// About 25 degrees apart. Islands that are seen only between two of them are taken for hidden.
 constexpr int direction_count = 64;
 
 // Uniform on the sphere (Fibonacci's spiral); one after the other they go far apart.
@@ -77,9 +78,14 @@ class View {
   const AabbTree tree_;
 };
 
-// Positions in a box around the origin whose diameter is 1.
+// Positions with the triangles in a box around the origin whose diameter is 1.
 Positions of_unit_size(const Surface& surface) {
-  const Eigen::RowVector3d low = surface.positions.colwise().minCoeff(), high = surface.positions.colwise().maxCoeff();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Eigen::RowVector3d low = Eigen::RowVector3d::Constant(infinity), high = -low;
+  for (const Index v : surface.triangles.reshaped()) {
+    low = low.cwiseMin(surface.positions.row(v));
+    high = high.cwiseMax(surface.positions.row(v));
+  }
   const double diameter = (high - low).norm();
   return (surface.positions.rowwise() - (low + high) / 2) / (diameter > 0 ? diameter : 1);
 }
@@ -88,8 +94,9 @@ Positions of_unit_size(const Surface& surface) {
 struct Samples {
   Samples(const Positions& positions, const Triangles& triangles, const std::vector<Index>& island, Index island_count)
       : of_island(island_count) {
-    constexpr double wanted = 4000;  // on the whole surface
-    constexpr double most_rows = 16;
+    // On the whole surface, besides the one of each triangle: about as close as a texture of 64 texels.
+    constexpr double wanted = 4000;
+    constexpr double most_rows = 16;  // of a triangle, so that few large ones do not take all
     Array<double> areas;
     double all = 0;
     for (Index f = 0; f < triangles.rows(); ++f) {
@@ -123,15 +130,8 @@ Index number_of_islands(const Surface& surface, const std::vector<Index>& island
     throw Error(Code::wrong_parameter, concat("There are ", island.size(),
                                               " numbers of islands; pass one for each of the ", count, " triangles."));
   }
-  Index out = 0;
-  for (const Index i : island) {
-    if (i < -1 || i >= count) {
-      throw Error(Code::index_out_of_range,
-                  concat("There is an island ", i, "; number them from 0 to at most ", count - 1, ", or -1 for none."));
-    }
-    out = std::max(out, i + 1);
-  }
-  return out;
+  require_numbers(island, "an island");
+  return island.empty() ? 0 : *std::max_element(island.begin(), island.end()) + 1;
 }
 
 }  // namespace

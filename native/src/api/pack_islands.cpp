@@ -12,6 +12,7 @@
 #include "packing/body.hpp"
 #include "packing/gaps.hpp"
 #include "packing/layout_search.hpp"
+#include "pipeline/validation.hpp"
 
 namespace lsgp {
 
@@ -38,18 +39,6 @@ Elements triangles_of(const std::vector<Index>& island, const Array<Index>& isla
     const Index i = element(island, t);
     return i >= 0 && i < ssize(is_one) && is_one[i];
   });
-}
-
-// There are no more numbers than elements, so that no table of them is large.
-void require_numbers(const std::vector<Index>& numbers, const char* what) {
-  const Index most = static_cast<Index>(numbers.size());
-  const Elements wrong = triangles_where(numbers, [&](Index t) {
-    const Index number = element(numbers, t);
-    return number < -1 || number >= most;
-  });
-  if (wrong.indices.empty()) return;
-  throw Error(Code::index_out_of_range, concat("There is ", what, " ", element(numbers, wrong.indices[0]),
-                                               "; number them from 0 to at most ", most - 1, ", or -1 for none."));
 }
 
 void require_length(std::size_t length, Index island_count, const char* what) {

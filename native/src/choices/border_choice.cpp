@@ -101,7 +101,8 @@ Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, c
       // its borders, or none of them, may be better off without: then each is compared by itself.
       ended = attempt([&] { return make(surfaces.ending_at(possible), share_of(progress, 0, 0)); });
       if (ended && !ended->result.cones.empty()) ended.reset();
-      if (ended) bound.emplace(objective, objective.quality(*ended, share_of(progress, 0, 0)));
+      if (ended)
+        bound.emplace(objective, objective.quality(*ended, share_of(progress, 0, 0)), Objective::Bound::Of::all);
     }
     try {
       best = make(surface, share_of(progress, 0, trying));

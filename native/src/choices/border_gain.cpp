@@ -15,8 +15,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double left_of_stretch = 0.1;  // by borders
-constexpr double well_filled = 0.65;     // more of the square is rarely filled
+constexpr double left_with_borders = 0.1;  // of the stretch
+constexpr double well_filled = 0.65;       // more of the square is rarely filled
 // Share of creases along the lattice that is worth as much as a texture that runs on across them.
 constexpr double worth_of_running_on = 0.15;
 constexpr double most_l2 = 1.1;
@@ -68,7 +68,7 @@ Array<Index> LowerCost::promising(MadeMap& usual, const Array<Index>& chosen, co
   const double empty = objective_.quality(usual, progress).empty;
   const double of_square = weights.square * std::max(0.0, empty + 1 - 1 / well_filled);
   return those_of(chosen, [&](Index i) {
-    const double expected = left_of_stretch * present.stretch[i] + price_of_island(usual.result, weights) * count[i] +
+    const double expected = left_with_borders * present.stretch[i] + price_of_island(usual.result, weights) * count[i] +
                             weights.borders * lengths[i] / std::sqrt(parts_.area());
     const double gain = present.whole[i] - expected + of_square * parts_.areas()[i] / parts_.area();
     return gain > -error_of_estimates;

@@ -49,7 +49,7 @@ Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryCh
                                   const Progress& progress) const {
   const auto third = [&](int number) { return share_of(progress, (number - 1) / 3.0, number / 3.0); };
   Made along;
-  if (!objective_.is_beyond_bound(parts_, for_features, 1)) {
+  if (!objective_.is_beyond_bound(objective_.expected_through(parts_, for_features, options_.of_map.mode))) {
     along = attempt([&] { return through(for_features, third(1)); });
   }
   if (along && !runs_along_features(along->result)) along.reset();

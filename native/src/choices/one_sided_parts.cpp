@@ -12,18 +12,6 @@ namespace lsgp {
 
 namespace {
 
-// The halfedge on the other side of each edge that two triangles share, or none.
-PerHalfedge<Index> find_other_sides(const EdgeTable& edges, Index halfedge_count) {
-  PerHalfedge<Index> out(halfedge_count, none);
-  for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (edges.halfedge_count(edge) != 2) continue;
-    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
-    out[a] = b;
-    out[b] = a;
-  }
-  return out;
-}
-
 void end_at(const VertexPairs& ends, const EdgeTable& edges, PerHalfedge<Index>& other_side) {
   for (Eigen::Index e = 0; e < ends.rows(); ++e) {
     const Index edge = edges.find(ends(e, 0), ends(e, 1));
@@ -31,8 +19,8 @@ void end_at(const VertexPairs& ends, const EdgeTable& edges, PerHalfedge<Index>&
   }
 }
 
-// Turns triangles one after another like those from which they are reached. Those that edges join which may not be cut
-// are turned at once.
+// Turns triangles one after another like those from which they are reached. Triangles joined by edges that may not be
+// cut are turned together.
 class Turning {
  public:
   Turning(const Surface& surface, const EdgeTable& edges, const PerHalfedge<Index>& other_side)
@@ -108,7 +96,7 @@ OpenedParts ends_of_one_sided_parts(const Surface& surface) {
   OpenedParts out;
   const auto halfedge_count = static_cast<Index>(3 * surface.triangles.rows());
   const EdgeTable edges(surface, PerTriangle<char>(surface.triangles.rows(), 0));
-  PerHalfedge<Index> other_side = find_other_sides(edges, halfedge_count);
+  PerHalfedge<Index> other_side = other_sides(edges, halfedge_count);
   end_at(surface.borders, edges, other_side);
   // Nearly all surfaces end here, sooner than by their topology.
   if (Turning(surface, edges, other_side).contradictions().rows() == 0) return out;
@@ -132,8 +120,8 @@ OpenedParts ends_of_one_sided_parts(const Surface& surface) {
 void tell_opened(const OpenedParts& opened, Result& result) {
   if (opened.triangles.empty()) return;
   result.warnings.push_back({Code::seams_opened,
-                             "A component is one-sided, like a Moebius strip: it was cut open, so that a side of it "
-                             "can be unwrapped face up. No texture can continue across all of these cuts.",
+                             "A one-sided component, like a Moebius strip, was cut open so that it has two sides. "
+                             "Its texture cannot continue across all of these cuts: mark seams to choose them.",
                              {ElementKind::triangles, opened.triangles}});
 }
 

@@ -16,8 +16,6 @@ namespace {
 constexpr double placing = 0.6;  // of the time of cones and maps
 // Of the islands of one map, what is hoped of another; over 88 pairs of maps the mean is 0.95.
 constexpr double islands_of_others = 0.75;
-// Of the stretch that cones are placed for, what low stretch leaves: 0.25 to 0.57 on 22 meshes.
-constexpr double left_by_low_stretch = 0.5;
 // Of the stretch of one map, what others are expected to have at least: where many times the target is left, cones at
 // other places hardly reach it either.
 constexpr double left_by_others = 0.5;
@@ -53,6 +51,7 @@ SymmetryChoice::SymmetryChoice(BorderedSurface& surface, Borrowed<const MapThrou
 Made SymmetryChoice::best(const MapOptions& options, const Progress& progress) {
   options_ = options;
   made_.clear();
+  beyond_.reset();
   std::vector<Candidate> candidates;
   if (tries_symmetry_) candidates.push_back(candidate(Kind::symmetric, 0));
   if (tries_symmetry_ && !options.of_map.mirrored_cuts) {
@@ -92,7 +91,10 @@ std::optional<double> SymmetryChoice::expected(Kind kind) const {
     case Kind::usual:
       // Without cones these are the symmetric ones.
       if (alike_ && alike_->cones.vertices.empty() && made(Kind::free_cuts) != nullptr) return {};
-      return made_.empty() ? Objective::infinity : expected_of_others(kind, 1);
+      if (!made_.empty()) return expected_of_others(kind, 1);
+      if (!beyond_) return Objective::infinity;
+      if (!alike_) return {};  // they are the same
+      return cost(with_stretch_of_others(*beyond_), objective_.weights());
     case Kind::partly: return expected_of_partly();
   }
   return {};
@@ -123,14 +125,15 @@ Made SymmetryChoice::through(const CompletedCones& cones, const Progress& progre
   return maps_(cones, options_, progress);
 }
 
-double SymmetryChoice::left_of_stretch() const {
-  return options_.of_map.mode == Mode::low_stretch ? left_by_low_stretch : 1;
-}
-
-// Of several components some may be better off through these cones.
-Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) const {
-  const bool is_alone = surface_.parts.count() == 1;
-  if (is_alone && objective_.is_beyond_bound(surface_.parts, cones, left_of_stretch())) return nullptr;
+Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) {
+  // Of several components some may be better off through these cones, whatever they cost on others.
+  if (surface_.parts.count() == 1 && objective_.bounds_first()) {
+    const Quality expected = objective_.expected_through(surface_.parts, cones, options_.of_map.mode);
+    if (objective_.is_beyond_bound(expected)) {
+      beyond_ = expected;
+      return nullptr;
+    }
+  }
   return through(cones, progress);
 }
 
@@ -183,15 +186,19 @@ std::optional<double> SymmetryChoice::expected_of_others(Kind kind, double asymm
   Quality other = like.quality;
   if (other.cuts == 0) return {};  // so there are no other ones
   if (other.asymmetry > asymmetry * share_) return {};
-  const double left = left_of_stretch();
   other.islands = std::max<double>(surface_.parts.count(), islands_of_others * other.islands);
-  if (same_cones == nullptr) {
-    other.stretch = std::min(other.stretch, std::max(100 * (given_.target - 1) * left, left_by_others * other.stretch));
-  }
+  if (same_cones == nullptr) other = with_stretch_of_others(other);
   other.asymmetry = asymmetry * share_;
   other.on_lattice = cost_on_even_lattice(like.map->result);
   if (!may_cost_less(like, other)) return {};
   return cost(other, weights);
+}
+
+// Through as many cones at other places.
+Quality SymmetryChoice::with_stretch_of_others(Quality quality) const {
+  const double placed_for = 100 * (given_.target - 1) * left_of_stretch(options_.of_map.mode);
+  quality.stretch = std::min(quality.stretch, std::max(placed_for, left_by_others * quality.stretch));
+  return quality;
 }
 
 // Whether a map could cost less than one that is made if all went well: with no stretch, cuts or cones, and as few

@@ -50,14 +50,14 @@ class SymmetryChoice {
   Made make(Kind kind, const Progress& progress);
   Made through(const CompletedCones& cones, const Progress& progress) const;
   // Null beyond the bound.
-  Made through_first(const CompletedCones& cones, const Progress& progress) const;
-  double left_of_stretch() const;  // of that which cones are placed for
+  Made through_first(const CompletedCones& cones, const Progress& progress);
   CompletedCones placed(Placing how, const Progress& progress) const;
   CompletedCones symmetric_cones(const Progress& progress);
 
   // Of maps with other cones or cuts than those that were made: stretched as much, unless the cones are others and that
   // is more than they are placed for, with three quarters of the islands.
   std::optional<double> expected_of_others(Kind kind, double asymmetry) const;
+  Quality with_stretch_of_others(Quality quality) const;
   // Whether it could cost less than one that is made, if all went well.
   bool may_cost_less(const MadeCandidate& made, Quality other) const;
   // Where both of the other ones were made: the sum over components, which is known.
@@ -78,6 +78,7 @@ class SymmetryChoice {
   std::optional<CompletedCones> alike_;  // symmetric cones, once they are placed
   double share_ = 0;                     // of the area, of symmetric components
   std::vector<MadeCandidate> made_;
+  std::optional<Quality> beyond_;  // expected of the map that was not made, since it is beyond the bound
 };
 
 // Cones of one choice, and on some components, given by their vertices, those of another one.

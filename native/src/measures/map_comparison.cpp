@@ -158,6 +158,8 @@ PerComponent<char> gains_features(const SurfaceParts& parts, const Result& along
   return out;
 }
 
+double left_of_stretch(Mode mode) { return mode == Mode::low_stretch ? 0.5 : 1; }
+
 double reached_up_to(double target, const Result& result, Mode mode) {
   if (result.seamless && runs_along_features(result)) return most_l2_for_features * target;
   return mode == Mode::low_stretch ? target : 0;

@@ -103,15 +103,18 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   return best;
 }
 
-bool Objective::is_beyond_bound(const SurfaceParts& parts, const CompletedCones& cones, double left) const {
-  if (!rival_) return false;
-  Quality expected;
-  expected.islands = parts.count();
-  expected.cones = count_by_area(parts, cones.cones.vertices);
+Quality Objective::expected_through(const SurfaceParts& parts, const CompletedCones& cones, Mode mode) const {
+  Quality out;
+  out.islands = parts.count();
+  out.cones = count_by_area(parts, cones.cones.vertices);
   const bool is_measured = cones.placement && std::isfinite(cones.placement->mapped_l2);
-  if (is_measured) expected.stretch = 100 * left * (cones.placement->mapped_l2 - 1);
-  expected.on_lattice = rival_->on_lattice;
-  return cost(expected, weights_) - error_of_estimates >= bound();
+  if (is_measured) out.stretch = 100 * left_of_stretch(mode) * (cones.placement->mapped_l2 - 1);
+  if (rival_) out.on_lattice = rival_->on_lattice;
+  return out;
+}
+
+bool Objective::is_beyond_bound(const Quality& expected) const {
+  return rival_ && cost(expected, weights_) - error_of_estimates >= bound();
 }
 
 void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {

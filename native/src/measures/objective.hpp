@@ -49,15 +49,22 @@ class Objective {
 
   // The candidate with the fewest triangles left out, the fewest defects, and the lowest cost. The one that is expected
   // to cost least is made first; then others as long as they may cost less than the best.
-  // Null where all are beyond the bound. Throws CANCELLED, and what the last one throws where none can be made.
+  // Null where none is made, and not because all of them throw. Throws CANCELLED, and what the last one throws where
+  // none can be made.
   Made choose(std::vector<Candidate> candidates, const Progress& progress);
 
   // Of all maps that were made until now, in any choice; null where there is none.
   const Made& best_so_far() const { return best_so_far_; }
 
-  // Whether a map through these cones is expected to cost more than the bound: with as few islands as components, and
-  // on as good a lattice as the other one.  left: of the stretch that was measured when they were placed.
-  bool is_beyond_bound(const SurfaceParts& parts, const CompletedCones& cones, double left) const;
+  // What is expected of a map through these cones: as few islands as components, stretched as was measured when they
+  // were placed, and during the lifetime of a bound on as good a lattice as its map.
+  Quality expected_through(const SurfaceParts& parts, const CompletedCones& cones, Mode mode) const;
+
+  // Whether that is expected to cost more than the bound.
+  bool is_beyond_bound(const Quality& expected) const;
+
+  // Whether the bound is one of first candidates as well.
+  bool bounds_first() const { return rival_ && bounds_first_; }
 
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
@@ -65,11 +72,16 @@ class Objective {
   // Adds the trace of another choice, on a surface that is named.
   void note_all(const std::string& surface, const std::vector<Choice>& others);
 
-  // During its lifetime nothing but the first candidate of a choice is made that is expected to cost more than another
-  // map does.
+  // During its lifetime nothing is made that is expected to cost more than another map does; of the first candidate of
+  // a choice, which has no estimate, its `make` may tell once its cones are placed.
   class Bound {
    public:
-    Bound(Objective& objective, const Quality& rival) : objective_(objective) { objective.rival_ = rival; }
+    enum class Of { others, all };  // than the first candidate
+
+    Bound(Objective& objective, const Quality& rival, Of of = Of::others) : objective_(objective) {
+      objective_.rival_ = rival;
+      objective_.bounds_first_ = of == Of::all;
+    }
     ~Bound() { objective_.rival_.reset(); }
     Bound(const Bound&) = delete;
     Bound& operator=(const Bound&) = delete;
@@ -95,6 +107,7 @@ class Objective {
   const SquareShare share_;
   std::vector<Choice> choices_;
   std::optional<Quality> rival_;  // of the bound
+  bool bounds_first_ = false;
   Made best_so_far_;
   Rank rank_so_far_;
 };

@@ -46,4 +46,15 @@ Index EdgeTable::find(Index a, Index b) const {
   return at != end && at->high == high ? edge_of_entry_[at - entries_.begin()] : none;
 }
 
+PerHalfedge<Index> other_sides(const EdgeTable& edges, Index halfedge_count) {
+  PerHalfedge<Index> out(halfedge_count, none);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) != 2) continue;
+    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
+    out[a] = b;
+    out[b] = a;
+  }
+  return out;
+}
+
 }  // namespace lsgp

@@ -36,4 +36,7 @@ class EdgeTable {
   PerHalfedge<Index> edge_of_halfedge_;
 };
 
+// The halfedge on the other side of each edge that two triangles share, or none. They may run in the same direction.
+PerHalfedge<Index> other_sides(const EdgeTable& edges, Index halfedge_count);
+
 }  // namespace lsgp

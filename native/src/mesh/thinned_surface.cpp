@@ -417,13 +417,12 @@ ThinnedSurface thin(const Surface& surface, const EdgeTable& edges, const PerHal
 }
 
 PerHalfedge<Index> find_twins(const Surface& surface, const EdgeTable& edges) {
-  PerHalfedge<Index> twin(3 * surface.triangles.rows(), none);
-  for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (edges.halfedge_count(edge) != 2) continue;
-    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
-    if (surface.triangles.data()[a] == surface.triangles.data()[b]) continue;
-    twin[a] = b;
-    twin[b] = a;
+  PerHalfedge<Index> twin = other_sides(edges, 3 * static_cast<Index>(surface.triangles.rows()));
+  const Index* tail = surface.triangles.data();
+  for (Index h = 0; h < ssize(twin); ++h) {
+    if (twin[h] == none || tail[h] != tail[twin[h]]) continue;
+    twin[twin[h]] = none;
+    twin[h] = none;
   }
   return twin;
 }

@@ -33,7 +33,8 @@ constexpr double hardly_filled = 0.3, shorter_unaligned = 0.9;
 // How long smaller squares are looked for at each effort, or better orders where bodies may not overlap at first, in
 // about nanoseconds: `good`: as long as doubling it fills .005 more of the square.
 constexpr double work_of_separation[]{1.2e7, 6e7, 1e10}, work_of_orders[]{4e6, 2e7, 1e9};
-// Of `best`: how often turns nearer to those of the best layout are tried, and how often their angle is halved.
+// Of `best`: how often turns nearer to those of the best layout are tried, and how often their angle is halved; six
+// layouts of Bake filled up to .03 more, two of them nothing.
 constexpr int rounds_of_turning = 4, halvings = 4;
 // Of `quick`: for fewer bodies, which have fewer layouts, less; for more, the first layout is taken. Islands of Bake
 // fill .644 of the square, and .637 if only ten and more get all of it.
@@ -432,7 +433,7 @@ PackedLayout LayoutSearch::best() {
     search(true);
     if (now_.side > shorter_unaligned * aligned.side) {
       now_ = std::move(aligned);
-      turns_ = std::move(turns);  // as its poses are numbered
+      turns_ = std::move(turns);  // by which its poses are numbered
     }
   }
   return layout();

@@ -405,4 +405,17 @@ void require_valid(const Surface& surface, const Pins& pins) {
   }
 }
 
+void require_numbers(const std::vector<Index>& numbers, const char* what) {
+  const Index most = static_cast<Index>(numbers.size());
+  Elements wrong{ElementKind::triangles, {}};
+  for (Index f = 0; f < most; ++f) {
+    if (element(numbers, f) < -1 || element(numbers, f) >= most) wrong.indices.push_back(f);
+  }
+  if (wrong.indices.empty()) return;
+  throw Error(Code::index_out_of_range,
+              concat("There is ", what, " ", element(numbers, wrong.indices[0]), "; number them from 0 to at most ",
+                     most - 1, ", or -1 for none."),
+              wrong);
+}
+
 }  // namespace lsgp

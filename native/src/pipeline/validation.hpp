@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
@@ -52,5 +53,9 @@ void require_valid(const PlacementOptions& options);
 
 // Throws PIN_INDEX, PIN_NON_FINITE.
 void require_valid(const Surface& surface, const Pins& pins);
+
+// Of islands or groups, one for each triangle, -1 for none: there are no more numbers than triangles, so that no table
+// of them is large. what: "an island". Throws INDEX_OUT_OF_RANGE.
+void require_numbers(const std::vector<Index>& numbers, const char* what);
 
 }  // namespace lsgp

@@ -51,18 +51,20 @@ std::string told(const TriedMap& map) {
   return concat("angles are off at ", angles, " and the two sides do not match at ", seams, " of cuts");
 }
 
-// What to do where cones are too few: with a corner at every tooth of a comb no number of cones that can be rounded is
-// enough.
-std::string remedy_for(const PlacementTask& task, std::size_t cone_count) {
-  constexpr double sharp = M_PI / 4;
-  const auto corners = static_cast<std::size_t>((task.geometry.angle_defect.array().abs() > sharp).count());
-  if (corners <= cone_count) {
+// What to do where cones are too few: with a corner at every tooth of a comb there are more corners than cones can be.
+std::string remedy_for(const PlacementTask& task) {
+  constexpr double sharp = M_PI / 4;  // where an eighth of a turn is rounded to a quarter of it, and not to none
+  const HalfedgeMesh& mesh = task.mesh;
+  Index corners = 0;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] == none && std::abs(task.geometry.angle_defect[v]) > sharp) ++corners;
+  }
+  if (corners <= most_one_by_one) {
     return "Place more, mark cones at tips and branches, or cut the component into simpler ones along seams.";
   }
-  return concat(
-      "It is curved by more than 45 degrees at ", count(corners, "vertex", "vertices"),
-      ", each of which would have to be a cone. Smooth it, or cut it into components with fewer corners along "
-      "seams.");
+  return concat("It is curved by more than 45 degrees at ", corners,
+                " vertices, and cones at all of them are too many. Smooth it, or cut it into components with fewer "
+                "corners along seams.");
 }
 
 // Marked cones are kept, and the map reports its defects; other cones with defects are refused.
@@ -72,7 +74,7 @@ void require_right(const VerifiedChoice& choice, const PlacementTask& task) {
   const std::size_t placed = choice.cones.vertices.size();
   throw Error(Code::solver_failed,
               concat("No cones were found with correct angles and seams on this component: with ",
-                     count(placed, "cone", "cones"), ", ", told(map), ". ", remedy_for(task, placed)),
+                     count(placed, "cone", "cones"), ", ", told(map), ". ", remedy_for(task)),
               {ElementKind::vertices, choice.cones.vertices});
 }
 

@@ -93,7 +93,7 @@ struct PartExtent {
   IslandBox box() const { return {(high - low).real(), (high - low).imag()}; }
   IslandBox box_of_cells() const { return {(last_cell - first_cell).real() + 1, (last_cell - first_cell).imag() + 1}; }
   bool is_scrap(const Cell& cell) const {
-    constexpr double most_filled = 0.5;  // of its cells
+    constexpr double most_filled = 0.5;  // of its cells: beyond, a box around scraps saves none of them
     return may_lie_anywhere && area(box()) <= most_filled * area(box_of_cells()) * cell.width * cell.height;
   }
 };

@@ -38,8 +38,8 @@ Array<Similarity> arrange(const Array<Island>& islands);
 Complex upright(const Eigen::VectorXcd& position);
 
 // Moves the parts of layouts side by side without rotating or scaling them: each by a lattice point with coordinates
-// that are multiples of `step`, into the first quadrant. Those that may lie anywhere and would
-// fill at most half of their cells lie beside each other in a box of their own.
+// that are multiples of `step`, into the first quadrant. Those that may lie anywhere and would fill at most half of
+// their cells lie beside each other in a box of their own.
 struct DividedLayout {
   Eigen::VectorXcd* position;  // u + iv of its points
   Array<Index> part;           // of each of them, 0 .. part_count - 1

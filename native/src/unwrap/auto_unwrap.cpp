@@ -66,12 +66,12 @@ Made best_for_strokes(const Surface& surface, const MapOptions& options,
 }
 
 // Scales islands that nothing outside can see.
-void scale_hidden(const Surface& surface, double scale, Result& result) {
-  std::vector<char> is_hidden(result.island.size(), 0);  // of islands, of which there are no more than triangles
-  for (const Index island : hidden_islands(surface, result.island)) is_hidden[island] = 1;
-  for (std::size_t f = 0; f < result.island.size(); ++f) {
-    const Index island = result.island[f];
-    if (island >= 0 && is_hidden[island]) result.corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(f)) *= scale;
+void scale_hidden(const Surface& surface, double scale, Result& result, const Progress& progress) {
+  Array<char> is_hidden(result.island.size(), 0);  // of islands, of which there are no more than triangles
+  for (const Index island : hidden_islands(surface, result.island, progress)) is_hidden[island] = 1;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    const Index island = element(result.island, f);
+    if (island >= 0 && is_hidden[island]) result.corner_uv.middleRows<3>(Eigen::Index{3} * f) *= scale;
   }
 }
 
@@ -106,9 +106,7 @@ struct GivenForMap {
   const Pins& pins;
 };
 
-// unlimited: goes on when the time is over.
-Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit,
-                    const Progress& unlimited) {
+Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit) {
   const Cones& cones = from.cones;
   const Pins& pins = from.pins;
   const Progress& progress = limit.progress();
@@ -172,7 +170,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
     return best_division(whole, of_map, by, share);
   };
-  const Progress late = share_of(after_measuring(unlimited), is_packed ? mapping : 1, is_packed ? mapping : 1);
+  const Progress late = share_of(after_measuring(limit.unlimited()), is_packed ? mapping : 1, is_packed ? mapping : 1);
   const Made best = best_in_time(limit, objective, of_map, [&] {
     const bool may_be_simplified = is_kept_when_simplified(surface, given, ends, of_map) && !is_pinned;
     return may_be_simplified
@@ -185,9 +183,11 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   tell_further_cuts(along.further, out.result);
   tell_opened(opened, out.result);
   if (is_packed) {
-    if (options.inside) scale_hidden(whole, *options.inside, out.result);
+    constexpr double looking = 0.3;  // of the time of packing
+    const Progress last = share_of(after_measuring(limit.unlimited()), mapping, 1);
+    if (options.inside) scale_hidden(whole, *options.inside, out.result, share_of(last, 0, looking));
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
-    const Progress packing = share_of(after_measuring(unlimited), mapping, 1);
+    const Progress packing = options.inside ? share_of(last, looking, 1) : last;
     const bool is_usual = effort == PackingEffort::quick && !options.margin && !options.inside;
     if (is_usual && best->packed_quickly) {
       out.result.corner_uv = std::move(*best->packed_quickly);
@@ -205,7 +205,7 @@ Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwr
                       const Progress& progress) {
   const TimeLimit limit(options.seconds, progress);
   try {
-    return unwrapped({surface, cones, pins}, options, limit, progress);
+    return unwrapped({surface, cones, pins}, options, limit);
   } catch (const Error& error) {
     if (!limit.has_caused(error)) throw;
     throw Error(Code::time_limit,

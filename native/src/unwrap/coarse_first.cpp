@@ -98,11 +98,13 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
   } catch (const Error& error) {
     const Made& best = on_few.best_so_far();
     if (!large.limit.has_caused(error) || objective.best_so_far() || !best) throw;
-    Made made = on_whole(*best, made_simply(best->options), large.unlimited);
+    const Made made = attempt([&] { return on_whole(*best, made_simply(best->options), large.unlimited); });
+    if (!made) throw;
+    objective.note_all(concat("on ", count, " triangles"), on_few.choices());
     made->result.warnings.push_back(
         {Code::time_limit,
-         "The time limit was reached while the map was chosen on few of the triangles: this "
-         "is the best one until then, made on all of them after that.",
+         "The time limit was reached while the map was chosen on few of the triangles: this is the best one until "
+         "then, made on all of them after that.",
          {}});
     return made;
   }

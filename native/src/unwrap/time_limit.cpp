@@ -6,15 +6,19 @@
 namespace lsgp {
 
 TimeLimit::TimeLimit(std::optional<double> seconds, const Progress& progress)
-    : has_stopped_(std::make_shared<bool>(false)), limited_(progress) {
+    : stopped_(std::make_shared<Stopped>()), unlimited_(progress), limited_(progress) {
   constexpr double longest = 1e9;  // of what a clock can tell
   if (!seconds) return;
   const std::chrono::duration<double> length(std::min(*seconds, longest));
   end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(length);
-  limited_ = [end = *end_, has_stopped = has_stopped_, progress](double done) {
-    if (progress && !progress(done)) return false;
-    *has_stopped = *has_stopped || Clock::now() > end;
-    return !*has_stopped;
+  unlimited_ = [stopped = stopped_, progress](double done) {
+    stopped->by_caller = stopped->by_caller || (progress && !progress(done));
+    return !stopped->by_caller;
+  };
+  limited_ = [end = *end_, stopped = stopped_, unlimited = unlimited_](double done) {
+    if (!unlimited(done)) return false;
+    stopped->by_time = stopped->by_time || Clock::now() > end;
+    return !stopped->by_time;
   };
 }
 

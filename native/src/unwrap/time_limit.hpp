@@ -18,18 +18,25 @@ class TimeLimit {
 
   // Also stops what it is told to when the time is over.
   const Progress& progress() const { return limited_; }
+  // Goes on when the time is over.
+  const Progress& unlimited() const { return unlimited_; }
 
   bool is_over() const { return end_ && Clock::now() > *end_; }
 
   // Whether it is why something ended with this error.
-  bool has_caused(const Error& error) const { return *has_stopped_ && error.code() == Code::cancelled; }
+  bool has_caused(const Error& error) const {
+    return stopped_->by_time && !stopped_->by_caller && error.code() == Code::cancelled;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   std::optional<Clock::time_point> end_;
-  std::shared_ptr<bool> has_stopped_;
-  Progress limited_;
+  struct Stopped {
+    bool by_time = false, by_caller = false;
+  };
+  std::shared_ptr<Stopped> stopped_;
+  Progress unlimited_, limited_;
 };
 
 }  // namespace lsgp
