@@ -121,3 +121,18 @@ def test_shares_that_are_none_are_refused(others):
 def test_two_sizes_are_refused():
     with pytest.raises(lsgp.InputError, match="inside and texels"):
         lsgp.auto_unwrap(together(BALL)[0], inside=0.5, texels=lsgp.TexelLayout(10.0, 1024))
+
+
+def test_vertices_without_triangles_are_not_part_of_the_surface():
+    surface, part = together(BALL, scaled(BALL, 1 - 1e-4))
+    apart = np.concatenate([surface.positions, [[1e6, 0, 0]]])
+    assert set(part[find_hidden(lsgp.Surface(apart, surface.triangles), part)]) == {1}
+
+
+@pytest.mark.parametrize("wrong", [-2, 10**6])
+def test_numbers_of_islands_are_those_of_triangles(wrong: int):
+    surface, part = together(BALL)
+    with pytest.raises(lsgp.InputError, match=f"There is an island {wrong}"):
+        find_hidden(surface, np.where(part == 0, wrong, 0).astype(np.int32))
+    with pytest.raises(lsgp.InputError, match="pass one for each"):
+        find_hidden(surface, part[1:])

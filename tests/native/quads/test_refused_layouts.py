@@ -6,12 +6,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-import large_meshes
 import lsgp
 import meshes
 import numpy as np
 import pytest
-from large_meshes import of_polygons
+from large_meshes import comb, of_polygons
 from map_checks import surface
 from numpy.typing import NDArray
 from quad_checks import flat_torus, layout_area, require_quads_of
@@ -170,16 +169,14 @@ def test_a_fine_grid_can_be_cancelled_all_the_time() -> None:
 
 @pytest.mark.parametrize("teeth", [125, 188])
 def test_a_comb_is_refused_with_the_number_of_its_corners(teeth: int) -> None:
-    """Each of its vertices is a corner of a quarter turn or more, by the angles of the triangles there. Where cones are
-    found for it, their grid is refused."""
-    comb = of_polygons(large_meshes.comb(teeth))
-    points = comb.positions[comb.triangles]
+    """Each of its vertices is a corner of a quarter turn or more, by the angles of the triangles there."""
+    mesh = of_polygons(comb(teeth))
+    points = mesh.positions[mesh.triangles]
     to_next, to_last = np.roll(points, -1, axis=1) - points, np.roll(points, 1, axis=1) - points
     cosine = (to_next * to_last).sum(axis=2) / np.linalg.norm(to_next, axis=2) / np.linalg.norm(to_last, axis=2)
     angles = np.arccos(np.clip(cosine, -1, 1))
-    defect = 2 * np.pi - np.bincount(comb.triangles.ravel(), angles.ravel(), len(comb.positions))
+    defect = 2 * np.pi - np.bincount(mesh.triangles.ravel(), angles.ravel(), len(mesh.positions))
     with pytest.raises(lsgp.SolverError) as caught:
-        lsgp.remesh_to_quads(comb)
-    if "No cones were found" in str(caught.value):
-        corners = (abs(defect) > np.pi / 4).sum()
-        assert f"more than 45 degrees at {corners} vertices" in str(caught.value).replace(",", "")
+        lsgp.remesh_to_quads(mesh)
+    assert "No cones were found" in str(caught.value)
+    assert f"more than 45 degrees at {(abs(defect) > np.pi / 4).sum()} vertices" in str(caught.value)
