@@ -85,7 +85,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"surface": surface(BOX), "cones": BOX.cones[:2], "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "target": 1.05, "symmetric": True, "creases": True, "sharp": BOX.triangles[:3, :2]},
             **{"pins": None, "seconds": None, "up": np.array([0.0, 1.0, 0.0])},
-            **{"pack": "shelves", "margin": None, "udim": None, "stack": None, "effort": None},
+            **{"pack": "shelves", "margin": None, "udim": None, "stack": None, "effort": None, "inside": None},
             **{"texels": lsgp.TexelLayout(100.0, 1024), "weights": lsgp.Weights(islands=0.1), "progress": None},
         },
     ),

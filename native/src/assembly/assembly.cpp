@@ -380,10 +380,7 @@ void Assembly::find_overlapping() {
   const PerTriangle<Index> face = number_faces();
   PerTriangle<char> is_flipped(surface_.triangles.rows(), 0);
   for (const Index f : result_.flipped) is_flipped[f] = 1;
-  const Rounding rounding = result_.seamless ? Rounding::stored : Rounding::computed;
-  const auto overlaps =
-      result_.flipped.empty() ? find_overlaps(layout_, twin, rounding) : find_overlaps(layout_, rounding);
-  for (const Overlap& overlap : overlaps) {
+  for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(layout_, twin) : find_overlaps(layout_)) {
     shared += overlap.area;
     const Index first = triangle[overlap.first], second = triangle[overlap.second];
     result_.overlapping.insert(result_.overlapping.end(), {first, second});

@@ -20,13 +20,9 @@ namespace {
 
 constexpr double explained_share = 1e-9;   // of a triangle's area that rounding of the map may put on another
 constexpr double operations_a_pair = 100;  // of triangles
+constexpr double last_digit = std::numeric_limits<double>::epsilon();
 constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
-
-// Of a coordinate. Layouts are stored with two binary digits less than float32 has, so that whole cells can be added.
-double explained_digits(Rounding rounding) {
-  return rounding == Rounding::stored ? 4.0 * std::numeric_limits<float>::epsilon()
-                                      : 64 * std::numeric_limits<double>::epsilon();
-}
+constexpr double explained_digits = 64 * last_digit;  // of a coordinate
 
 double length(Complex a) { return std::sqrt(std::norm(a)); }
 
@@ -85,8 +81,7 @@ class Layout {
  public:
   // may_overlap(box): whether to look at a triangle in such a box.
   template <typename MayOverlap>
-  Layout(const Eigen::VectorXcd& position, Rounding rounding, MayOverlap may_overlap)
-      : explained_digits_(explained_digits(rounding)) {
+  Layout(const Eigen::VectorXcd& position, MayOverlap may_overlap) {
     for (Index f = 0; f < static_cast<Index>(position.size() / 3); ++f) {
       Corners corners{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
       const double area = doubled_area(corners[0], corners[1], corners[2]) / 2;
@@ -133,10 +128,9 @@ class Layout {
     const double border = length(c[1] - c[0]) + length(c[2] - c[1]) + length(c[0] - c[2]);
     const Box both = around(boxes_[i], boxes_[j]);
     const double farthest = std::max({-both.left, both.right, -both.bottom, both.top});
-    return area > explained_share * area_[smaller] + explained_digits_ * farthest * border ? area : 0;
+    return area > explained_share * area_[smaller] + explained_digits * farthest * border ? area : 0;
   }
 
-  const double explained_digits_;
   Array<Index> triangle_;
   Array<Corners> corners_;
   Array<double> area_;
@@ -156,20 +150,20 @@ Box frame_of(const Eigen::VectorXcd& position) {
 
 }  // namespace
 
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, Rounding rounding) {
-  return *Layout(position, rounding, [](const Box&) { return true; }).find_overlaps(any_number, {});
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
+  return *Layout(position, [](const Box&) { return true; }).find_overlaps(any_number, {});
 }
 
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin, Rounding rounding) {
-  return *find_few_overlaps(position, twin, any_number, {}, rounding);
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
+  return *find_few_overlaps(position, twin, any_number, {});
 }
 
 std::optional<Array<Overlap>> find_few_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin,
-                                                std::size_t most, const PerTriangle<Index>& face, Rounding rounding) {
+                                                std::size_t most, const PerTriangle<Index>& face) {
   const BoundaryPolygon boundary(position, twin);
   if (!boundary.has_overlap()) return Array<Overlap>();
   const WindingRaster twice(boundary, frame_of(position), static_cast<Index>(twin.size() / 3));
-  return Layout(position, rounding, [&](const Box& box) { return twice.meets(box); }).find_overlaps(most, face);
+  return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps(most, face);
 }
 
 bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {

@@ -19,24 +19,18 @@ struct Overlap {
   double area;
 };
 
-// How far rounding may have moved coordinates: of those that were computed, and of those that were stored in float32,
-// where a vertex on a side of another triangle, across an open seam, may have come to lie beyond it.
-enum class Rounding { computed, stored };
-
 // All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out. Pairs
 // that share less of the smaller one than rounding explains are neighbors and do not count.
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, Rounding rounding = Rounding::computed);
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
 // The same for a layout without flipped triangles, faster: only where the winding number of its boundary is 2 or more.
 // twin: the halfedge on the other side where the layout continues, none at its boundary.
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin,
-                             Rounding rounding = Rounding::computed);
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin);
 
 // The same; none where there are more than so many, as soon as that is known.  face: only pairs of different faces
 // count; empty: all do.
 std::optional<Array<Overlap>> find_few_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin,
-                                                std::size_t most, const PerTriangle<Index>& face,
-                                                Rounding rounding = Rounding::computed);
+                                                std::size_t most, const PerTriangle<Index>& face);
 
 // Whether there is any such pair in a layout without flipped triangles. Inspects only its boundary: an immersed surface
 // with a boundary that neither crosses itself nor encloses another part of it does not overlap itself.
