@@ -88,8 +88,8 @@ struct AutoUnwrapOptions {
   bool pack = true;
   std::optional<PackingEffort> effort;  // none: that of the preset
   std::optional<double> margin;         // none: usual_margin
-  // Of packed islands that nothing outside can see, as by hidden_islands: their texel density in that of the others,
-  // above 0 and at most 1.
+  // Of packed islands that nothing outside can see, as by hidden_islands: their texel density relative to that of the
+  // others, above 0 and at most 1. Without effect where islands are not packed.
   std::optional<double> inside;
   // After so many the best map made until then is the result, and TIME_LIMIT says so.
   std::optional<double> seconds;
@@ -104,8 +104,8 @@ struct Unwrapped {
 
 // cones: are kept. A component without cones gets the number that its stretch requires, which may be 0; one whose cones
 // cannot take up its curvature gets more.
-// Throws what `place_cones` and `parameterize` throw; WRONG_PARAMETER for weights, targets and seconds that are none;
-// TIME_LIMIT where no map was made in time.
+// Throws what `place_cones` and `parameterize` throw; WRONG_PARAMETER for weights, targets, seconds and shares that are
+// none; TIME_LIMIT where no map was made in time.
 LSGP_API Unwrapped auto_unwrap(const Surface& surface, const Cones& cones = {}, const AutoUnwrapOptions& options = {},
                                const Pins& pins = {}, const Progress& progress = {});
 

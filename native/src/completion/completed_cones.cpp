@@ -215,7 +215,7 @@ std::vector<Finding> findings_of(const CompletedCones& cones, const Result& resu
       cones.target && result.distortion.l2_stretch <= reached_up_to(*cones.target, result, options.mode);
   std::vector<Finding> of_placement;
   for (const Finding& finding : cones.placement->warnings) {
-    // Which triangles are turned hangs on where the surface ends, and cones may have been placed where it ended
+    // Which triangles are turned depends on where the surface ends, and cones may have been placed where it ended
     // elsewhere.
     if (finding.code == Code::reoriented) continue;
     Finding told = true_of_map(finding, result);

@@ -373,7 +373,8 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
     for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
     throw Error(Code::not_orientable,
                 "The surface has one side only, like a Moebius strip, so no side of it can be unwrapped face up. "
-                "Delete or split faces so that it has two sides.",
+                "Delete or split faces so that it has two sides, or unwrap it with a preset and without cones, which "
+                "cuts it open.",
                 {ElementKind::triangles, std::move(all)});
   }
   Geometry geometry = build_geometry(component.mesh);
