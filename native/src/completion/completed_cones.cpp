@@ -100,11 +100,7 @@ CompletedCones placed_freely(Solver& solver, const CompletionOptions& completion
   for (std::size_t f = 0; f < without.size(); ++f) {
     if (!without[f]) triangles.push_back(static_cast<Index>(f));
   }
-  if (triangles.empty()) {
-    CompletedCones none_needed;
-    none_needed.target = completion.target;
-    return none_needed;
-  }
+  if (triangles.empty()) return {{}, {}, completion.target, false};  // none are needed
   return completed({}, completion, options, place_on(triangles, solver.surface(), {}, {completion, options}, progress));
 }
 
