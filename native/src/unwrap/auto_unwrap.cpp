@@ -187,14 +187,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     const Progress last = share_of(after_measuring(limit.unlimited()), mapping, 1);
     if (options.inside) scale_hidden(whole, *options.inside, out.result, share_of(last, 0, looking));
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
-    const Progress packing = options.inside ? share_of(last, looking, 1) : last;
-    const bool is_usual = effort == PackingEffort::quick && !options.margin && !options.inside;
-    if (is_usual && best->packed_quickly) {
-      out.result.corner_uv = std::move(*best->packed_quickly);
-      tell(packing, 1);
-    } else {
-      pack(out.result, options.margin, effort, packing);
-    }
+    pack(out.result, options.margin, effort, options.inside ? share_of(last, looking, 1) : last);
   }
   return out;
 }
