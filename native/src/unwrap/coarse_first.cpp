@@ -68,14 +68,15 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
     tell_findings(*made, how.of_map);
     return made;
   };
+  const auto tell_choices = [&] { objective.note_all(concat("on ", count, " triangles"), on_few.choices()); };
   const auto chosen_on_few = [&](const Progress& share) {
     EndsInMap own;
     own.creases = {simplified.from_whole(ends.creases.required), simplified.from_whole(ends.creases.possible),
                    ends.creases.carry_all};
     own.may_cut_open = false;  // that has no counterpart on all triangles
     const Made best = choose(simplified.surface(), own, on_few, share_of(share, 0, choosing));
-    objective.note_all(concat("on ", count, " triangles"), on_few.choices());
     expected = on_few.quality(*best, share_of(share, choosing, choosing));
+    tell_choices();
     return on_whole(*best, best->options, share_of(share, choosing, 1));
   };
   const auto measure = [&](const Made& made, const Progress& packing) {
@@ -100,7 +101,7 @@ Made best_coarse_first(const LargeSurface& large, const ChooseMap& choose, Objec
     if (!large.limit.has_caused(error) || objective.best_so_far() || !best) throw;
     const Made made = attempt([&] { return on_whole(*best, made_simply(best->options), large.unlimited); });
     if (!made) throw;
-    objective.note_all(concat("on ", count, " triangles"), on_few.choices());
+    if (!expected) tell_choices();
     made->result.warnings.push_back(
         {Code::time_limit,
          "The time limit was reached while the map was chosen on few of the triangles: this is the best one until "

@@ -97,5 +97,6 @@ def test_what_was_chosen_on_few_triangles_is_there_when_the_time_is_over(large: 
         assert error.code == "TIME_LIMIT" and reached < 0.14
         return
     assert "TIME_LIMIT" in codes(result.warnings)
+    assert len({str(choice) for choice in result.choices}) == len(result.choices)
     assert result.solved.all() and not len(result.flipped) and not len(result.overlapping)
     assert undeclared_faults(replace(large, borders=result.borders), result, lsgp.preset_options("paint")) == []
