@@ -287,14 +287,10 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
     for why, is_so in fixed.items():
         if is_so and packing.pack == "tight":
             arguments.refuse("pack", packing.pack, f"leave it out, since this layout is {why}")
-        if is_so and packing.udim is not None:
-            arguments.refuse("udim", packing.udim, f"leave it out, since this layout is {why}")
-        if is_so and packing.stack is not None:
-            arguments.refuse("stack", packing.stack, f"leave it out, since this layout is {why}")
-        if is_so and packing.inside is not None:
-            arguments.refuse("inside", packing.inside, f"leave it out, since this layout is {why}")
-        if is_so and packing.effort is not None:
-            arguments.refuse("effort", packing.effort, f"leave it out, since this layout is {why}")
+        for name in ("udim", "stack", "inside", "effort"):
+            value = getattr(packing, name)
+            if is_so and value is not None:
+                arguments.refuse(name, value, f"leave it out, since this layout is {why}")
     if texels is not None and packing.udim is not None:
         arguments.refuse("udim", packing.udim, "leave it out and pass that of texels, whose density says the size")
     return packing.is_tight and not any(fixed.values())

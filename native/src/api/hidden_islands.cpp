@@ -61,8 +61,8 @@ class View {
   }
 
   bool hides(Index f, const Eigen::RowVector3d& at) const {
-    constexpr double rounding = 1e-9;
-    constexpr double nearer = 1e-6;  // of the extent, so that no triangle hides itself and its doubles
+    constexpr double rounding = 1e-9;  // of its sides, so that no ray leaves between two triangles
+    constexpr double nearer = 1e-6;    // of the extent, so that no triangle hides itself and its doubles
     const Eigen::RowVector3d a = seen_.row(triangles_(f, 0)), ab = seen_.row(triangles_(f, 1)) - a,
                              ac = seen_.row(triangles_(f, 2)) - a;
     const double doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
@@ -138,7 +138,7 @@ Index number_of_islands(const Surface& surface, const std::vector<Index>& island
 
 std::vector<Index> hidden_islands(const Surface& surface, const std::vector<Index>& island,
                                   const Progress& progress) try {
-  constexpr double operations_a_point = 200;
+  constexpr double operations_a_point = 200;  // the way down a tree, and some triangles
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   require_valid(surface);

@@ -39,9 +39,7 @@ class Turning {
       const Index h = edges_.halfedge(edge, 0), other = other_side_[h];
       if (other != none && turn_[other / 3] != turn_beyond(h) && may_be_cut(h)) found.emplace_back(tail(h), head(h));
     }
-    VertexPairs out(ssize(found), 2);
-    for (std::ptrdiff_t e = 0; e < ssize(found); ++e) out.row(e) << found[e].first, found[e].second;
-    return out;
+    return to_rows(found);
   }
 
  private:

@@ -63,9 +63,7 @@ VertexPairs edges_off_trees(const SurfaceParts& parts, const PerComponent<char>&
   for (const Link& link : links) {
     if (!pieces.unite(link.one, link.other) && link.flatness < uncuttable) ends.emplace_back(link.low, link.high);
   }
-  VertexPairs out(ssize(ends), 2);
-  for (std::ptrdiff_t e = 0; e < ssize(ends); ++e) out.row(e) << ends[e].first, ends[e].second;
-  return out;
+  return to_rows(ends);
 }
 
 CompletedCones beside(const CompletedCones& cones, const SurfaceParts& parts, const PerComponent<char>& is_chosen) {

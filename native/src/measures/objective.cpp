@@ -49,10 +49,10 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   Rank rank;
   ProgressSteps steps(progress);
   std::exception_ptr failure;
-  bool is_beyond = false;  // one of them
+  const std::size_t count = candidates.size();
   while (const std::optional<Estimate> next = most_promising(candidates)) {
     const double most = std::min(rank.has_defects() ? infinity : rank.cost, bound());
-    const bool is_first = !best && !failure && !is_beyond;
+    const bool is_first = candidates.size() == count;
     if (!is_first && most < infinity && next->cost - error_of_estimates >= most) break;
     const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(next->place);
     const Candidate candidate = std::move(*place);
@@ -61,7 +61,7 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
     Made made;
     const auto refuse = [&](Code code) {
       failure = std::current_exception();
-      choices_.push_back({candidate.name, next->cost, {}, {}, std::string("is refused: ") + name(code), false});
+      note_unmade(candidate.name, next->cost, std::string("is refused: ") + name(code));
     };
     try {
       made = candidate.make(step);
@@ -75,8 +75,7 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
     }
     const auto name_of_made = [&] { return candidate.name_of_made ? candidate.name_of_made() : candidate.name; };
     if (!made) {
-      is_beyond = true;
-      choices_.push_back({name_of_made(), next->cost, {}, {}, "is expected to cost more through its cones", false});
+      note_unmade(name_of_made(), next->cost, "is expected to cost more through its cones");
       continue;
     }
     if (!best_so_far_) best_so_far_ = made;  // measuring may be stopped
@@ -96,7 +95,7 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   }
   for (const Candidate& candidate : candidates) {
     const std::optional<double> expected = candidate.expected();
-    if (expected) choices_.push_back({candidate.name, *expected, {}, {}, "is expected to cost more", false});
+    if (expected) note_unmade(candidate.name, *expected, "is expected to cost more");
   }
   if (!best && failure) std::rethrow_exception(failure);
   tell(progress, 1);
@@ -119,6 +118,10 @@ bool Objective::is_beyond_bound(const Quality& expected) const {
 
 void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {
   choices_.push_back({name, estimate, cost(quality, weights_), quality, in_words(quality), is_best});
+}
+
+void Objective::note_unmade(const std::string& name, double estimate, const std::string& why) {
+  choices_.push_back({name, estimate, {}, {}, why, false});
 }
 
 void Objective::note_all(const std::string& surface, const std::vector<Choice>& others) {

@@ -101,6 +101,7 @@ class Objective {
     bool is_better_than(const Rank& best) const;
   };
 
+  void note_unmade(const std::string& name, double estimate, const std::string& why);
   double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
 
   const Weights weights_;

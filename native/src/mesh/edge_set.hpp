@@ -39,4 +39,11 @@ VertexPairs filtered(const VertexPairs& edges, Predicate is_kept) {
   return out;
 }
 
+// One row for each pair.
+inline VertexPairs to_rows(const Array<std::pair<Index, Index>>& pairs) {
+  VertexPairs out(ssize(pairs), 2);
+  for (std::ptrdiff_t e = 0; e < ssize(pairs); ++e) out.row(e) << pairs[e].first, pairs[e].second;
+  return out;
+}
+
 }  // namespace lsgp
