@@ -97,7 +97,7 @@ MergedCells merge(const IslandCells& cells, const Array<Sides>& sides) {
 Support::Support(const Array<Complex>& points) : Support() {
   static const std::array<Complex, 4 * turns> unit = [] {
     std::array<Complex, 4 * turns> out;
-    for (int i = 0; i < 4 * turns; ++i) out[i] = std::polar(1.0, M_PI / 2 * i / turns);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::polar(1.0, M_PI / 2 * static_cast<double>(i) / turns);
     return out;
   }();
   for (const Complex point : points) {
@@ -109,10 +109,10 @@ Support::Support(const Array<Complex>& points) : Support() {
 }
 
 double Support::hull_area() const {
-  constexpr int count = 4 * turns;
+  constexpr std::size_t count = 4 * turns;
   static const double cosine = std::cos(M_PI / 2 / turns), sine = std::sin(M_PI / 2 / turns);
   double doubled = 0;
-  for (int i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double beside = along_[(i + 1) % count] + along_[(i + count - 1) % count];
     doubled += along_[i] * (beside - 2 * cosine * along_[i]) / sine;
   }
@@ -137,7 +137,7 @@ bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& islan
 
 WholeIsland DivisionSearch::describe(double area, const Support& support) const {
   double box = std::numeric_limits<double>::infinity(), square = box;
-  for (int turn = 0; turn < Support::turns; ++turn) {
+  for (std::size_t turn = 0; turn < Support::turns; ++turn) {
     box = std::min(box, support.width(turn) * support.height(turn));
     square = std::min(square, std::max(support.width(turn), support.height(turn)));
   }

@@ -41,7 +41,7 @@ struct Line {
 // the larger of both along each.
 class Support {
  public:
-  static constexpr int turns = 45;  // in a quarter
+  static constexpr std::size_t turns = 45;  // in a quarter
 
   Support() { along_.fill(-std::numeric_limits<double>::infinity()); }
   explicit Support(const Array<Complex>& points);
@@ -52,8 +52,8 @@ class Support {
   // Of the least polygon with sides across these directions that contains the points.
   double hull_area() const;
   // Of the box that is turned by so many of the turns.
-  double width(int turn) const { return along_[turn] + along_[turn + 2 * turns]; }
-  double height(int turn) const { return along_[turn + turns] + along_[turn + 3 * turns]; }
+  double width(std::size_t turn) const { return along_[turn] + along_[turn + 2 * turns]; }
+  double height(std::size_t turn) const { return along_[turn + turns] + along_[turn + 3 * turns]; }
 
  private:
   std::array<double, 4 * turns> along_;

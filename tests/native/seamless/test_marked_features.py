@@ -123,18 +123,35 @@ def test_rims_of_a_cone_run_along_the_lattice() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "teeth, depth",
-    [(5, 0.4), *many_solves((7, 0.25)), *nightly((10, 0.15), (12, 0.2), marks=[pytest.mark.many_solves])],
+    [(5, 0.25), *many_solves((7, 0.25)), *nightly((8, 0.25), (10, 0.15), marks=[pytest.mark.many_solves])],
 )
-def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
-    """Few of them fold the layout, and are released where they do."""
+def test_all_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
     mesh = closed.toothed_wheel(teeth, depth)
     edges = lsgp.feature_edges(surface(mesh), angle=0.7)
     wheel = marked(mesh, edges)
     result = lsgp.auto_unwrap(wheel, preset="tile", options=PLAIN, creases=False)
+    assert is_along_axis(ends(mesh, result, edges)).all()
+    assert result.features == lsgp.FeatureReport(1.0, [])
+    assert undeclared_faults(wheel, result, PLAIN) == []
+
+
+@pytest.mark.parametrize("teeth, depth", [(5, 0.4), *nightly((12, 0.2), marks=[pytest.mark.many_solves])])
+def test_the_share_of_deep_teeth_is_that_of_the_edges_along_the_lattice(teeth: int, depth: float) -> None:
+    """A few of them fold the layout, and are released where they do: how many hangs on rounding."""
+    mesh = closed.toothed_wheel(teeth, depth)
+    edges = lsgp.feature_edges(surface(mesh), angle=0.7)
+    wheel = marked(mesh, edges)
+    free, result = (
+        lsgp.auto_unwrap(each, preset="tile", options=PLAIN, creases=False) for each in (surface(mesh), wheel)
+    )
     lengths = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
-    is_straight = [is_along_axis(ends(mesh, result, edge[None])).all() for edge in edges]
-    assert lengths[is_straight].sum() / lengths.sum() == pytest.approx(result.features.share, abs=1e-9)
-    assert result.features.share > 0.9
+
+    def straight_share(of: lsgp.Result) -> float:
+        is_straight = [is_along_axis(ends(mesh, of, edge[None])).all() for edge in edges]
+        return lengths[is_straight].sum() / lengths.sum()
+
+    assert straight_share(result) == pytest.approx(result.features.share, abs=1e-9)
+    assert straight_share(result) > 2 * straight_share(free)
     assert undeclared_faults(wheel, result, PLAIN) == []
 
 
