@@ -2,9 +2,9 @@
 // Choices on few triangles of a large surface, and what comes of them on all of them.
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <vector>
 
+#include "balls.hpp"
 #include "lsgp/lsgp.hpp"
 #include "unwrap/coarse_first.hpp"
 #include "unwrap/simplified_surface.hpp"
@@ -12,38 +12,6 @@
 using namespace lsgp;
 
 namespace {
-
-// A smooth ball of about so many triangles without symmetry.
-Surface ball(Index triangles) {
-  const auto rows = static_cast<Index>(std::sqrt(triangles / 4.0)), around = 2 * rows;
-  Surface out;
-  out.positions.resize(around * (rows - 1) + 2, 3);
-  const auto place = [&](Index v, double latitude, double longitude) {
-    const double z = std::sin(latitude), x = std::cos(latitude) * std::cos(longitude),
-                 y = std::cos(latitude) * std::sin(longitude);
-    const double radius = 1 + 0.2 * std::sin(2.3 * x + 1) * std::cos(1.7 * y) + 0.1 * std::sin(3.1 * z + y);
-    out.positions.row(v) << radius * x, radius * y, radius * z;
-  };
-  for (Index i = 0; i < rows - 1; ++i) {
-    for (Index j = 0; j < around; ++j) {
-      place(around * i + j, M_PI * (i + 1) / rows - M_PI / 2, 2 * M_PI * j / around);
-    }
-  }
-  const Index south = around * (rows - 1), north = south + 1;
-  place(south, -M_PI / 2, 0);
-  place(north, M_PI / 2, 0);
-  std::vector<Index> corners;
-  for (Index j = 0; j < around; ++j) {
-    const Index next = (j + 1) % around, last = around * (rows - 2);
-    corners.insert(corners.end(), {south, next, j, north, last + j, last + next});
-    for (Index i = 0; i + 2 < rows; ++i) {
-      const Index a = around * i + j, b = around * i + next, c = b + around, d = a + around;
-      corners.insert(corners.end(), {a, b, c, a, c, d});
-    }
-  }
-  out.triangles = Eigen::Map<const Triangles>(corners.data(), static_cast<Index>(corners.size()) / 3, 3);
-  return out;
-}
 
 // What the best map is chosen by: these cones on few triangles, the usual ones on all.
 struct Chooser {
@@ -72,10 +40,34 @@ Made chosen(const Surface& surface, Chooser& chooser) {
   return best_coarse_first({surface, nowhere, 1.05, none, untold}, std::ref(chooser), objective, untold);
 }
 
+enum class Stop { before, after_a_map };
+
+constexpr const char* stopped = "It was stopped.";
+
+// The limit, whose time is over, is asked from that moment of the choice on few triangles on.
+Made chosen_in_time(const Surface& surface, const TimeLimit& limit, Stop when) {
+  bool is_asked = false;
+  const Progress progress = [&](double done) { return !is_asked || limit.progress()(done); };
+  Chooser chooser{surface, true};
+  const auto choose = [&](const Surface& on, const EndsInMap& ends, Objective& by, const Progress& share) {
+    if (when == Stop::after_a_map) {
+      const auto make = [&](const Progress& of_map) { return chooser(on, ends, by, of_map); };
+      const auto quality = [&](const Made& made, const Progress& packing) { return by.quality(*made, packing); };
+      by.choose({{"a map", [] { return 0.0; }, make, quality, {}}}, share);
+    }
+    is_asked = true;
+    if (share && !share(1)) throw Error(Code::cancelled, stopped);
+    return chooser(on, ends, by, share);
+  };
+  Objective objective(preset_weights(Preset::paint), {});
+  const EndsInMap nowhere;
+  return best_coarse_first({surface, nowhere, 1.05, limit, limit.unlimited()}, choose, objective, progress);
+}
+
 }  // namespace
 
 TEST_CASE("what is chosen on few triangles is made on all of them") {
-  const Surface surface = ball(33000);
+  const Surface surface = uneven_ball(33000);
   Chooser chooser{surface, true};
   const Made made = chosen(surface, chooser);
   CHECK(chooser.on_few == 1);
@@ -89,7 +81,7 @@ TEST_CASE("what is chosen on few triangles is made on all of them") {
 }
 
 TEST_CASE("where that cannot be made, the map is chosen on all triangles") {
-  const Surface surface = ball(33000);
+  const Surface surface = uneven_ball(33000);
   Chooser chooser{surface, false};  // a ball has no map without cones
   const Made made = chosen(surface, chooser);
   CHECK(chooser.on_few == 1);
@@ -98,7 +90,7 @@ TEST_CASE("where that cannot be made, the map is chosen on all triangles") {
 }
 
 TEST_CASE("what a simplified surface keeps has the same places on the whole one") {
-  Surface surface = ball(5000);
+  Surface surface = uneven_ball(5000);
   surface.borders.resize(3, 2);
   surface.borders << 500, 501, 501, 502, 502, 503;
   surface.importance = Eigen::VectorXd::LinSpaced(surface.positions.rows(), 1, 2);
@@ -119,11 +111,27 @@ TEST_CASE("what a simplified surface keeps has the same places on the whole one"
 }
 
 TEST_CASE("a linear function on a simplified surface is linear on the whole one, up to its bending") {
-  const Surface surface = ball(5000);
+  const Surface surface = uneven_ball(5000);
   const SimplifiedSurface simplified(surface, {}, 1500);
   CompletedCones cones;
   cones.placement = Placement{};
   cones.placement->log_scale = simplified.surface().positions.col(2);
   const Eigen::VectorXd carried = simplified.on_whole(std::move(cones)).placement->log_scale;
   CHECK((carried - surface.positions.col(2)).cwiseAbs().maxCoeff() < 0.1);
+}
+
+TEST_CASE("when the time is over, what was chosen on few triangles until then is made on all of them") {
+  const Surface surface = uneven_ball(33000);
+  const TimeLimit limit(0.0, {});
+  const Made made = chosen_in_time(surface, limit, Stop::after_a_map);
+  CHECK(made->surface->surface().triangles.rows() == surface.triangles.rows());
+  CHECK(made->result.flipped.empty());
+  CHECK(made->result.warnings.back().code == Code::time_limit);
+}
+
+TEST_CASE("nothing is delivered where nothing was chosen in time, and after a cancel") {
+  const Surface surface = uneven_ball(33000);
+  const TimeLimit limit(0.0, {}), cancelled(0.0, [](double) { return false; });
+  CHECK_THROWS_WITH(chosen_in_time(surface, limit, Stop::before), stopped);
+  CHECK_THROWS_WITH(chosen_in_time(surface, cancelled, Stop::after_a_map), stopped);
 }

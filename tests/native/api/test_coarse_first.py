@@ -78,25 +78,41 @@ def test_small_surfaces_are_chosen_for_as_they_are() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("until", [0.05, 0.14, 0.2])
-def test_what_was_chosen_on_few_triangles_is_there_when_the_time_is_over(large: lsgp.Surface, until: float) -> None:
-    """The time is spent where that part of the work is done; choosing on few triangles ends before 0.14 of it."""
+def test_what_was_chosen_on_few_triangles_is_there_when_the_time_is_over(large: lsgp.Surface) -> None:
+    """The time is spent where that part of the work is done. Once there is a map, there is one at all later moments,
+    also where a slow machine takes longer than that; which choice there is when is tested in C++, without a clock."""
+    ended: list[tuple[float, bool]] = []
+    for until in (0.05, 0.14, 0.2):
+        reached, result = unwrapped_until(large, until)
+        ended.append((reached, result is not None))
+        if result is None:
+            continue
+        assert "TIME_LIMIT" in codes(result.warnings)
+        assert len({str(choice) for choice in result.choices}) == len(result.choices)
+        assert result.solved.all() and not len(result.flipped) and not len(result.overlapping)
+        bordered = replace(large, borders=result.borders)
+        assert undeclared_faults(bordered, result, lsgp.preset_options("paint")) == []
+    has_map = [is_made for _, is_made in sorted(ended)]
+    assert has_map == sorted(has_map)
+
+
+def unwrapped_until(large: lsgp.Surface, until: float) -> tuple[float, lsgp.Result | None]:
+    """How much of the work was done when the time was over, and the map that there was."""
     seconds, reached = 8.0, 0.0
     begin = time.monotonic()
 
     def wait_at_the_end(done: float) -> bool:
         nonlocal reached
-        reached = done
-        if done > until:
-            time.sleep(max(begin + seconds + 0.01 - time.monotonic(), 0))
+        is_over = time.monotonic() > begin + seconds
+        if not is_over:
+            reached = done
+        if done > until and not is_over:
+            time.sleep(begin + seconds + 0.01 - time.monotonic())
         return True
 
     try:
         result = lsgp.auto_unwrap(large, seconds=seconds, progress=wait_at_the_end)
     except lsgp.SolverError as error:
-        assert error.code == "TIME_LIMIT" and reached < 0.14
-        return
-    assert "TIME_LIMIT" in codes(result.warnings)
-    assert len({str(choice) for choice in result.choices}) == len(result.choices)
-    assert result.solved.all() and not len(result.flipped) and not len(result.overlapping)
-    assert undeclared_faults(replace(large, borders=result.borders), result, lsgp.preset_options("paint")) == []
+        assert error.code == "TIME_LIMIT"
+        return reached, None
+    return reached, result
