@@ -21,7 +21,7 @@ from ..io.side_files import UsageError
 from ..io.standard_streams import complain, say
 from ..io.whole_files import remove_partials, write_whole
 from ..run import exit_codes
-from ..run.named_files import Reads, named_files
+from ..run.named_files import Reads, named_files, path_option
 from ..run.terminal import ProgressLine
 from ..run.unwrap_options import seconds_option
 from .assets import (
@@ -78,7 +78,7 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
         help="a text file with a path on each line, a folder, searched at any depth, or a single mesh",
     )
     batch.add_argument(
-        "--out", metavar="DIR", type=Path, required=True, help="folder of the results, created if missing"
+        "--out", metavar="DIR", type=path_option, required=True, help="folder of the results, created if missing"
     )
     batch.add_argument("--jobs", metavar="N", type=_count_option, help="concurrent processes (default: one per core)")
     batch.add_argument("--shard", metavar="i/n", type=shard_option, help="only the i-th of n parts, for array jobs")

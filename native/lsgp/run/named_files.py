@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import wraps
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -32,11 +33,27 @@ class NamedFile:
     completed_by: str | None = None
 
 
+def path_option(text: str) -> Path:
+    """Raises ArgumentTypeError for no name, as of a variable that a shell does not know: it would be the working
+    folder."""
+    return Path(_named(text))
+
+
+def _named(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty; is a variable of the shell not set?")
+    return text
+
+
 class Reads(argparse.Action):
     """Stores the value of an argument that names a file to read, or keeps its own meaning for some values."""
 
     is_written = False
     completed_by: str | None = None
+
+    def __init__(self, *words: Any, **named: Any) -> None:
+        value_of: Callable[[str], Any] = named.pop("type", None) or str
+        super().__init__(*words, type=wraps(value_of)(lambda text: value_of(_named(text))), **named)
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option: str | None = None

@@ -44,6 +44,20 @@ def test_every_argument_that_may_name_a_file_is_declared_so(name: str) -> None:
     assert free - NO_FILES == {action.dest for action in FILES[name]}
 
 
+@pytest.mark.parametrize(
+    ("name", "dest"),
+    [("batch", "out"), *((name, action.dest) for name, files in FILES.items() for action in files)],
+)
+def test_an_empty_name_is_not_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, dest: str
+) -> None:
+    """As of a variable of the shell that is not set."""
+    monkeypatch.chdir(tmp_path)
+    assert main(command_line(name, {"out": "results", dest: ""})) == 2
+    assert "the name is empty" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 # Every argument that is written with every other one, but with what it completes; a batch writes into a folder.
 PAIRS = [
     (name, one.dest, other.dest)
