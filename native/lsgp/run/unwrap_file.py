@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import parameterize
+from ..base.counted import counted
 from ..base.progress import Progress, share_of
 from ..base.unique_rows import unique_rows
 from ..errors import Finding, InputError, LsgpError, SolverError
@@ -218,6 +219,10 @@ def read_file(
         form, mesh = parse_mesh(source, data, given_format, with_uv=with_uv)
     if with_uv and mesh.corner_uv is None:
         raise InputError("NO_UV", f"{form.name} is not read with texture coordinates. Convert the file to OBJ.")
+    if len(mesh.sizes) == 0:
+        name, number = "Standard input" if source is None else repr(str(source)), len(mesh.positions)
+        content = f"{counted(number, 'vertex', 'vertices')} and no faces" if number else "no mesh"
+        raise InputError("EMPTY_MESH", f"{name} has {content}. Export the mesh again, with its faces.")
     with run.stage("triangulate"):
         file = MeshFile.of(source, form, data, mesh, stitch)
     require_apart_from(written, path, file.named_files)

@@ -407,7 +407,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
         metavar="T",
         type=texture_size_option,
         help=f"the texture's side in texels, a power of two, for errors given in texels "
-        f"(default: {DEFAULT_TEXTURE_SIZE}); also for --texel-density, --udim and --pack tight",
+        f"(default: {DEFAULT_TEXTURE_SIZE}); also for --texel-density, --udim and tight layouts",
     )
     seamless.add_argument(
         "--mip-levels",
@@ -438,7 +438,7 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         "--margin",
         metavar="M",
         type=_margin_option,
-        help="with --udim or --pack tight: texels around each island "
+        help="with --udim and tight layouts: texels around each island "
         f"(default: {DEFAULT_MARGIN:.0f}, of {DEFAULT_TEXTURE_SIZE} without --texture-size)",
     )
 
@@ -591,7 +591,7 @@ def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
 
     Raises UsageError where options do not fit.
     """
-    if args.margin is not None and args.udim is None and args.pack != "tight":
+    if args.margin is not None and args.udim is None and _pack(args) != "tight":
         raise UsageError("--margin is for UDIM tiles or tight layouts; add --udim or --pack tight")
     if args.texel_density is None:
         return None
@@ -605,6 +605,13 @@ def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
     return TexelLayout(args.texel_density, args.texture_size, args.udim, margin)
 
 
+def _pack(args: argparse.Namespace) -> Pack | None:
+    """As of `Packing`. Presets that pack tightly do so with the margin that is asked for, and never on shelves then."""
+    by_preset = args.preset is not None and not _is_seamless(args) and args.udim is None
+    has_margin = args.margin is not None or (args.texture_size is not None and args.texel_density is None)
+    return "tight" if args.pack is None and by_preset and has_margin else args.pack
+
+
 def packing_of(args: argparse.Namespace) -> Packing | None:
     """How islands are packed; None where they have to stay as they come.
 
@@ -615,36 +622,37 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
         return None
+    pack = _pack(args)
     if args.inside is not None and args.texel_density is not None:
         raise UsageError("--inside and --texel-density both say how large islands are; leave one out")
     for name in ("stack", "inside", "effort"):
         is_given = getattr(args, name) is not None
-        if is_given and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
+        if is_given and pack != "tight" and (pack or not (args.preset or args.udim)):
             raise UsageError(f"--{name} is for tight layouts; add --pack tight")
         if is_given and args.udim is not None and args.texel_density is not None:
             raise UsageError(
                 f"--{name} is for islands that are not in rows; leave it out, or --texel-density or --udim"
             )
     if args.udim is not None and args.texel_density is not None:
-        if args.pack is not None:
+        if pack is not None:
             raise UsageError("--pack is for islands that are not in rows; leave it out, or --texel-density or --udim")
         return None
-    if args.udim is not None and args.pack == SHELVES:
+    if args.udim is not None and pack == SHELVES:
         raise UsageError("--udim makes a tight layout; leave --pack shelves out, or add --texel-density instead of it")
-    if args.pack is None and args.preset is None and args.udim is None:
+    if pack is None and args.preset is None and args.udim is None:
         return None
     margin = None if args.margin is None else args.margin / texture_size(args)
-    if (args.pack == "tight" or args.udim is not None) and margin is None and args.texture_size is not None:
+    if (pack == "tight" or args.udim is not None) and margin is None and args.texture_size is not None:
         margin = DEFAULT_MARGIN / args.texture_size
     if margin is not None and margin >= 0.5:
         raise UsageError(
             f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
         )
     effort = args.effort
-    if effort is None and args.preset is not None and args.pack != SHELVES:
+    if effort is None and args.preset is not None and pack != SHELVES:
         effort = preset_effort(args.preset)
     up = DEFAULT_UP if args.up is None else tuple(args.up)
-    return Packing(args.pack, margin, args.udim, args.stack, effort, up if any(up) else None, args.inside)
+    return Packing(pack, margin, args.udim, args.stack, effort, up if any(up) else None, args.inside)
 
 
 def library_options(args: argparse.Namespace) -> Options:
@@ -697,7 +705,7 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
                 continue
             if name != "texture_size":
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
-            if args.texel_density is None and args.udim is None and args.pack != "tight":
+            if args.texel_density is None and args.udim is None and _pack(args) != "tight":
                 raise UsageError(
                     "--texture-size is for margins, texel densities and seamless layouts; add --pack tight, --udim, "
                     "--texel-density or --seamless"

@@ -83,8 +83,9 @@ def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts
 @pytest.mark.parametrize(("margin", "size"), [(4, None), (16, None), (1, 256), (0, 64), (None, 512)])
 def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, few_tries, margin, size) -> None:
     options = [*(("--margin", margin) if margin is not None else ()), *(("--texture-size", size) if size else ())]
-    done = lsgp(*BAKE, "--pack", "tight", *options)
+    done = lsgp(*BAKE, *options)
     assert (done.code, done.err) == (0, "")
+    assert done.report()["packing"]["pack"] == "tight"
     texel, wanted = 1 / (size or 1024), 4 if margin is None else margin
     found = room(*layout(parts / "out.obj"))
     assert found.between >= 2 * wanted * texel - WRITTEN and found.border >= wanted * texel - WRITTEN
@@ -143,7 +144,7 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
         (("--preset", "bake", "--udim", 2, "--pack", "shelves"), "leave --pack shelves out"),
         (("--preset", "tile", "--udim", 2), "not seamless"),
         (("--seamless", "--udim", 2), "not seamless"),
-        (("--preset", "bake", "--margin", 2), "or --pack tight"),
+        (("--margin", 2), "or --pack tight"),
         (("--preset", "bake", "--pack", "shelves", "--margin", 2), "--pack tight"),
         (
             ("--preset", "bake", "--pack", "shelves", "--texture-size", 512),

@@ -128,9 +128,9 @@ def test_what_does_not_fit_is_refused_and_nothing_written(
     ("options", "told"),
     [
         (("--texel-density", 10), "add --texture-size"),
-        (("--margin", 2), "add --udim"),
-        (("--texture-size", 1024), "add --pack tight, --udim, --texel-density or --seamless"),
-        (("--texel-density", 10, "--texture-size", 1024, "--margin", 2), "add --udim"),
+        (("--pack", "shelves", "--margin", 2), "add --udim"),
+        (("--pack", "shelves", "--texture-size", 1024), "add --pack tight, --udim, --texel-density or --seamless"),
+        (("--pack", "shelves", "--texel-density", 10, "--texture-size", 1024, "--margin", 2), "add --udim"),
         (("--texel-density", 10, "--texture-size", 16, "--udim", 2, "--margin", 8), "no room"),
         (("--texel-density", 10, "--seamless"), "add --texture-size"),
         (("--texel-density", 10, "--texture-size", 1024, "--seamless", "--tiles", 4), "leave --tiles"),
