@@ -30,7 +30,10 @@ struct PlacementOptions {
   bool follow_strokes = true;            // as in Options
   SeamMode seams = SeamMode::follow;     // a component that gets cones is not opened along its seams
   BorderMode border = BorderMode::free;  // strips: tubes between two boundaries get no cones
-  int threads = 0;                       // as in Options
+  // Cones of a noisy surface, as a scan, are chosen on its shape: noise at the scale of triangles has no part in it.
+  // Log scale, stretch and target are that shape's, while a map of the surface has the stretch of noise besides.
+  bool without_noise = false;
+  int threads = 0;  // as in Options
 };
 
 struct Placement {

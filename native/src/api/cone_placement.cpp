@@ -14,6 +14,7 @@
 #include "creases/tubes.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/mirror.hpp"
+#include "mesh/noise.hpp"
 #include "pipeline/said_once.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
@@ -192,7 +193,8 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
     }
-    const PlacementTask task{{component.mesh, geometry}, given.cones, allowed, mirrored};
+    const Shape shape({component.mesh, geometry}, options.without_noise);
+    const PlacementTask task{shape.surface(), given.cones, allowed, mirrored};
     PlacementOptions of_component = options;
     const bool is_unrolled = given.may_be_strip && component.mesh.is_ring() && tube_shape(task) != TubeShape::none;
     if (is_unrolled) of_component.count = 0;
@@ -221,7 +223,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     if (!options.count && !found.reached) {
       shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
-    work.keep_system(component, std::move(found.system));
+    if (!shape.is_smoothed()) work.keep_system(component, std::move(found.system));
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);

@@ -13,6 +13,7 @@
 #include "creases/rounds.hpp"
 #include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
+#include "mesh/noise.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
@@ -48,16 +49,17 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     const HalfedgeMesh& mesh = component.mesh;
     if (!component.orientable || work.tasks[i].is_marked(mesh)) return;
     const Geometry geometry = require_geometry(component, findings);
-    const Eigen::VectorXd bend = bends(mesh);
+    const Shape shape({mesh, geometry});
+    const Eigen::VectorXd bend = bends(shape.surface().mesh);
     PerHalfedge<char> crease(mesh.halfedge_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       // Once for both sides: on folded triangles they may disagree about which way the surface bends.
       if (!may_cut(mesh, h) || h > mesh.twin[h]) continue;
       const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
-      crease[h] = crease[mesh.twin[h]] = (bend[h] >= options.angle && !is_round(mesh, bend, h)) ||
+      crease[h] = crease[mesh.twin[h]] = (bend[h] >= options.angle && !is_round(shape.surface().mesh, bend, h)) ||
                                          (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
-    const PerHalfedge<char> open = find_crease_borders({mesh, geometry}, crease, bend, options);
+    const PerHalfedge<char> open = find_crease_borders(shape.surface(), crease, bend, options);
     append_ends(component, open, edges);
   });
   monitor.advance(1);

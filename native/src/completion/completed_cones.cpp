@@ -36,6 +36,7 @@ Placement place(Solver& solver, const Cones& given, const CompletionRules& rules
   placing.follow_strokes = options.of_map.follow_strokes;
   placing.seams = options.of_map.seams;
   placing.border = options.of_map.border;
+  placing.without_noise = true;
   placing.threads = options.of_map.threads;
   return solver.place_cones(given, placing, progress);
 }

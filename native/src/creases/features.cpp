@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/union_find.hpp"
+#include "mesh/noise.hpp"
 
 namespace lsgp {
 
@@ -84,7 +85,8 @@ bool CreaseCurvature::is_curved() const {
 double CreaseCurvature::count(double sum, double of_squares) { return std::round(sum * sum / of_squares); }
 
 PerHalfedge<char> find_features(const MetricMesh& surface) {
-  const HalfedgeMesh& mesh = surface.mesh;
+  const Shape shape(surface);
+  const HalfedgeMesh& mesh = shape.surface().mesh;
   PerHalfedge<char> out(mesh.halfedge_count(), 0);
   PerVertex<char> has_feature(mesh.vertex_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -92,7 +94,7 @@ PerHalfedge<char> find_features(const MetricMesh& surface) {
     out[h] = 1;
     has_feature[mesh.origin(h)] = 1;
   }
-  const bool is_hard = CreaseCurvature(surface, has_feature).is_hard() && are_lines(mesh, out);
+  const bool is_hard = CreaseCurvature(shape.surface(), has_feature).is_hard() && are_lines(mesh, out);
   if (!is_hard) std::fill(out.begin(), out.end(), 0);
   return out;
 }
