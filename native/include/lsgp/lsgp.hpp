@@ -61,6 +61,11 @@ LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences&
 LSGP_API VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones = {},
                                     const CreaseOptions& options = {}, const Progress& progress = {});
 
+// The same by each of several options; what they have in common is found once.
+LSGP_API std::vector<VertexPairs> crease_borders_by(const Surface& surface, const std::vector<Index>& cones,
+                                                    const std::vector<CreaseOptions>& options,
+                                                    const Progress& progress = {});
+
 // The tubes of components that consist of them for the most part: between their borders they unfold into strips with
 // `BorderMode::strips`. A quad is two triangles on both sides of an edge that is not among `Surface::edges`; where
 // these are all, on both sides of the longest edge of both. Components with cones or seams have none, but for tubes

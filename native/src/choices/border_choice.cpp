@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/progress_share.hpp"
 #include "choices/border_gain.hpp"
@@ -63,20 +65,26 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
   creases.sharp = rules.sharp;
   if (options.of_map.seamless) {
     if (given.are_free() && follows_features(surface, options)) {
-      out.possible = crease_borders(surface, {}, creases, untimed);
-      creases.least_share = nearly_all;
-      out.carry_all = out.possible.rows() > 0 && surface.features.rows() == 0 &&
-                      crease_borders(surface, {}, creases, untimed).rows() == out.possible.rows();
+      CreaseOptions all = creases;
+      all.least_share = nearly_all;
+      std::vector<VertexPairs> found = crease_borders_by(surface, {}, {creases, all}, untimed);
+      out.possible = std::move(found[0]);
+      out.carry_all = out.possible.rows() > 0 && surface.features.rows() == 0 && found[1].rows() == out.possible.rows();
     }
     return out;
   }
   if (!rules.most_corners) return out;
   creases.most_corners = *rules.most_corners;
-  out.required = crease_borders(surface, given.cones.vertices, creases, untimed);
+  std::vector<CreaseOptions> rules_by_need{creases};
+  if (!given.count) {
+    creases.most_corners = 0;
+    creases.least_share = least_share_to_try;
+    rules_by_need.push_back(creases);
+  }
+  std::vector<VertexPairs> found = crease_borders_by(surface, given.cones.vertices, rules_by_need, untimed);
+  out.required = std::move(found[0]);
   if (given.count) return out;
-  creases.most_corners = 0;
-  creases.least_share = least_share_to_try;
-  const VertexPairs possible = crease_borders(surface, given.cones.vertices, creases, untimed);
+  const VertexPairs& possible = found[1];
   const EdgeSet required(out.required);
   out.possible = filtered(possible, [&](Eigen::Index e) { return !required.has(possible(e, 0), possible(e, 1)); });
   return out;
