@@ -121,6 +121,20 @@ def test_the_summary_of_one_folder_has_no_lines_for_folders(batch, library: Path
     assert "folder, medians" not in batch("library/cube.off", "--out", "one").stdout
 
 
+@pytest.mark.skipif(os.name == "nt", reason="names of files of POSIX")
+def test_names_end_no_line_of_the_summary(batch, tmp_path: Path) -> None:
+    for name in ("odd\nresults 9/a.off", "plain/none\x1b[2J\n.off"):
+        path = tmp_path / "library" / name
+        path.parent.mkdir(parents=True)
+        path.write_text(off_text(grid(3, 3)) if path.name == "a.off" else "OFF\n")
+    done = batch("library", "--out", "out", "--no-pictures", "--preset", "paint")
+    summary = (tmp_path / "out" / "summary.txt").read_text()
+    for text in (done.stdout, summary):
+        assert all(line.isprintable() for line in text.split("\n"))
+    folders = summary.splitlines()[-2:]
+    assert [line.split("  ")[0] for line in folders] == ["odd\\x0aresults 9", "plain"]
+
+
 WRONG_USAGE = {
     "no source": (["nowhere", "--out", "out"], "nowhere"),
     "no assets": (["empty", "--out", "out"], "has no assets"),

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from ..base.counted import counted
+from ..io.standard_streams import visible
 from .progress import duration
 from .records import FAILED, OK, REFUSED, Record, is_whole
 
@@ -27,7 +28,7 @@ def summary_table(records: Sequence[Record]) -> str:
             rows.append((f"  {code}", count, f"{first}{', ...' if count > 1 else ''}"))
     rows += _figures(records, results)
     lines = [counted(len(records), "asset")]
-    lines += [f"{label:<28}{value:>12}  {note}".rstrip() for label, value, note in rows]
+    lines += [f"{label:<28}{value:>12}  {visible(note)}".rstrip() for label, value, note in rows]
     return "\n".join([*lines, *_by_folder(records)])
 
 
@@ -49,7 +50,7 @@ def _by_folder(records: Sequence[Record]) -> list[str]:
             *_median_and_highest(results, ".2f", lambda record: record["coverage"])[:1],
             *_median_and_highest(results, ".3f", lambda record: record["distortion"]["l2_stretch"]),
         ]
-        lines.append(f"{folder:<28}{''.join(f'{text:>10}' for text in (len(inside), len(results), *figures))}")
+        lines.append(f"{visible(folder):<28}{''.join(f'{text:>10}' for text in (len(inside), len(results), *figures))}")
     return lines
 
 

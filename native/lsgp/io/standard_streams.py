@@ -9,9 +9,17 @@ import os
 import sys
 from typing import TextIO
 
+# Of ASCII and of what follows it: those that end lines and command terminals.
+_CONTROLS = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x7F, 0xA0))}
+
+
+def visible(name: str) -> str:
+    """With control characters escaped, by which the name of a file would end a line or command the terminal."""
+    return name.translate(_CONTROLS)
+
 
 def say(stream: TextIO | None, text: str) -> None:
-    """Print a line at once; characters the terminal has not are escaped.  Raises OSError.
+    """Print lines at once; control characters, and those the terminal has not, are escaped.  Raises OSError.
 
     stream: None where the process was started without it, which is no error; nor is a reader that has closed its end.
     """
@@ -19,7 +27,8 @@ def say(stream: TextIO | None, text: str) -> None:
         return
     encoding = stream.encoding or "utf-8"
     try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+        shown = "\n".join(map(visible, text.split("\n")))
+        print(shown.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
     except OSError as error:
         silence(stream)
         if not has_no_reader(error):  # without one the command goes on, as it still has files to write

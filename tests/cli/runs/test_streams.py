@@ -157,3 +157,14 @@ def test_standard_output_that_is_a_pipe_is_refused_by_name_at_once(cube_files: P
 def test_endless_devices_are_refused(cube_files: Path, lsgp) -> None:
     done = lsgp("unwrap", "/dev/zero", "-o", "out.obj", "--format", "obj")
     assert (done.code, "Not a regular file" in done.err) == (2, True)
+
+
+@needs_posix
+@pytest.mark.parametrize("name", ["a\x1b[2Jb.obj", "a\x07.obj", "a\r.obj", "a\x9b2J.obj", "a\x7f.obj"])
+def test_a_name_does_not_command_the_terminal(cube_files: Path, lsgp, name: str) -> None:
+    (cube_files / name).write_bytes((cube_files / "cube.obj").read_bytes())
+    corners = ("--cones", "corners.json")
+    for arguments in ((name, "-o", "out.obj"), ("cube.obj", "-o", name), ("none" + name, "-o", "out.obj")):
+        done = lsgp("unwrap", *arguments, *corners)
+        assert all(line.isprintable() for line in (done.out + done.err).split("\n"))
+        assert (name in arguments[::2]) == (done.code == 0)
