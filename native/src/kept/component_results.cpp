@@ -23,8 +23,9 @@ bool is_same_lattice(const Seamless& a, const Seamless& b) {
   return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
 }
 
-// Whether seamless layouts differ only in the size of tiles and in what runs along them, and other ones only in how
-// islands fill a square; the number of threads does not matter, and the task says which cuts are symmetric.
+// Whether seamless layouts differ only in the size of tiles and in what runs along them or has straight sides, and
+// other ones only in how islands fill a square; the number of threads does not matter, and the task says which cuts are
+// symmetric.
 bool has_same_maps(const Options& a, const Options& b) {
   const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
                overlaps, compact, mirrored_cuts, follow_strokes, square_share, factorization, threads] = a;
@@ -72,11 +73,15 @@ void drop_earliest(Array<Entry>& entries) {
   if (entries.size() == most_kept) entries.erase(entries.begin());
 }
 
+// Whether straight sides are a matter of a map, and not only of its lattice: cuts would have to fit that as well.
+bool may_have_straight_sides(const MapResult& kept) { return kept.map && kept.map->map.cut_graph.cuts.empty(); }
+
 }  // namespace
 
 MapResult& ComponentResults::of_map(const ComponentTask& task, const Options& options) {
   const auto known = std::find_if(maps_.begin(), maps_.end(), [&](const OfMap& kept) {
-    return is_same(kept.task, task) && has_same_maps(kept.options, options);
+    return is_same(kept.task, task) && has_same_maps(kept.options, options) &&
+           (kept.options.straighten == options.straighten || !may_have_straight_sides(kept.result));
   });
   if (known == maps_.end()) {
     drop_earliest(maps_);

@@ -455,3 +455,16 @@ def test_threads_that_share_a_solver_take_turns_or_are_refused() -> None:
         assert refused.value.code == "SOLVER_BUSY"
         assert_same(first.result(60), fresh[0])
     assert_same(solver.parameterize(mesh.cones[1:], options=RAW), fresh[1])
+
+
+def test_straight_sides_on_a_lattice_are_not_those_of_an_earlier_call() -> None:
+    """An island without cuts has them before it is put onto the lattice."""
+    mesh = meshes.grid(6, 4, lambda x, y: 0.3 * np.sin(x) * y)
+    sheet = lsgp.Surface(mesh.positions, mesh.triangles)
+    solver = lsgp.Solver(sheet)
+    found = []
+    for straighten in (False, True, False, True):
+        options = lsgp.Options(seamless=lsgp.Seamless(tiles=8), straighten=straighten)
+        found.append(solver.parameterize((), options=options).corner_uv)
+        assert np.array_equal(found[-1], lsgp.parameterize(sheet, (), options=options).corner_uv)
+    assert not np.array_equal(found[0], found[1])

@@ -440,10 +440,16 @@ def test_rounding_does_not_choose_the_borders_of_regular_outlines(mesh: Mesh) ->
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])
 def test_sides_of_extruded_outlines_become_bands(points: int, inner: float, height: float) -> None:
-    """Unfolded with the caps, sides would lie over each other at every notch, and be islands of their own."""
+    """Unfolded with the caps, sides would lie over each other at every notch, and be islands of their own. How many of
+    the sides follow each other in a band hangs on rounding: two or more on average."""
     mesh = closed.star(points, inner, height)
     result = lsgp.auto_unwrap(surface(mesh), preset="paint", pack="shelves")
-    assert result.island.max() + 1 <= max(6, points - 2)
+    corners = mesh.positions[mesh.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    is_side = np.abs(normal[:, 2]) < 1e-9 * np.linalg.norm(normal, axis=1)
+    bands, all_islands = np.unique(result.island[is_side]), np.unique(result.island)
+    sides = 2 * points
+    assert 2 * len(bands) <= sides and len(all_islands) <= len(bands) + 2
     assert result.distortion.l2_stretch <= 1.0005 and len(result.overlapping) == 0
 
 
