@@ -101,17 +101,17 @@ def test_what_was_chosen_on_few_triangles_is_there_when_the_time_is_over(large: 
 
 
 def unwrapped_until(large: lsgp.Surface, until: float) -> tuple[float, lsgp.Result | None]:
-    """How much of the work was done when the time was over, and the map that there was."""
-    seconds, reached = 8.0, 0.0
+    """What was told of the work when the time was over, and the map that there was."""
+    seconds, reached, is_over = 8.0, 0.0, False
     begin = time.monotonic()
 
     def wait_at_the_end(done: float) -> bool:
-        nonlocal reached
-        is_over = time.monotonic() > begin + seconds
+        nonlocal reached, is_over
         if not is_over:
             reached = done
-        if done > until and not is_over:
-            time.sleep(begin + seconds + 0.01 - time.monotonic())
+            if done > until:
+                time.sleep(max(begin + seconds + 0.01 - time.monotonic(), 0))
+            is_over = time.monotonic() > begin + seconds
         return True
 
     try:
