@@ -47,7 +47,7 @@ TEST_CASE("a fuller square is worth as many islands as weights say") {
   for (const Preset preset : {Preset::paint, Preset::bake}) {
     const Weights weights = preset_weights(preset);
     Objective objective(weights, {});
-    LowerCost gain(surfaces.first()->parts, possible, objective);
+    LowerCost gain(surfaces.first()->parts, possible, at_creases, objective);
     for (const double more : {0.0, 1.0, 3.0}) {
       // The square that makes up for the further islands.
       const double even = 1 / (1 + weights.islands * more / weights.square);

@@ -55,6 +55,11 @@ LSGP_API std::vector<std::vector<Index>> split_into_paths(const VertexPairs& edg
 LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences,
                                    const Progress& progress = {});
 
+// Edges for `Surface::borders` that enclose the parts where cuts are dear, ten times as much as usual and more, as in
+// front, and divide them from those where they cost no more than usual. None where cuts have no costs, or where these
+// differ too little. Throws what `parameterize` throws for surfaces.
+LSGP_API VertexPairs costly_outline(const Surface& surface, const Progress& progress = {});
+
 // Edges for `Surface::borders`, so that hard surfaces unfold with hardly any stretch and without cones: their creases,
 // unless patches can be unfolded together across them, and one edge path along every tube. Components with cones or
 // seams have none, nor have those with curvature off their creases. WRONG_PARAMETER.

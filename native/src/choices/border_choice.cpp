@@ -132,11 +132,25 @@ Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, c
     AlongLattice gain(surface->parts, borders);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   } else {
-    LowerCost gain(surface->parts, borders, objective);
+    LowerCost gain(surface->parts, borders, at_creases, objective);
     best = best_of_gaining(gain, borders, best, make_ending, rest);
   }
   tell(progress, 1);  // maps that were not needed leave their time
   return best;
+}
+
+Made best_around_front(const Made& usual, const VertexPairs& outline, const MakeMap& make, Objective& objective,
+                       const Progress& progress) {
+  const SurfaceParts& parts = usual->surface->parts;
+  const PossibleBorders borders(parts, outline);
+  LowerCost gain(parts, borders, around_front, objective);
+  const auto make_ending = [&](const VertexPairs& edges, const Progress& share) {
+    Surface ending = parts.surface();
+    ending.borders = joined(ending.borders, edges);
+    return make(std::make_shared<BorderedSurface>(std::move(ending), usual->surface->in_tubes, usual->surface.get()),
+                share);
+  };
+  return best_of_gaining(gain, borders, usual, make_ending, progress);
 }
 
 }  // namespace lsgp

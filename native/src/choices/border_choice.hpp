@@ -37,4 +37,10 @@ CreaseBorders crease_borders_for(const Surface& surface, const GivenCones& given
 Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, const MakeMap& make,
                      Objective& objective, const Progress& progress);
 
+// The map, or one in which components also end at the outline of what the front sees, if it costs less: no cut leads
+// into the front then. What is seen of the outline costs as cuts do.
+// make: maps of the surface with some of these borders.  Throws what `make` throws.
+Made best_around_front(const Made& usual, const VertexPairs& outline, const MakeMap& make, Objective& objective,
+                       const Progress& progress);
+
 }  // namespace lsgp

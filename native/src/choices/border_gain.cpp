@@ -15,8 +15,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double left_with_borders = 0.1;  // of the stretch
-constexpr double well_filled = 0.65;       // more of the square is rarely filled
+constexpr double well_filled = 0.65;  // more of the square is rarely filled
 // Share of creases along the lattice that is worth as much as a texture that runs on across them.
 constexpr double worth_of_running_on = 0.15;
 constexpr double most_l2 = 1.1;
@@ -60,17 +59,29 @@ VertexPairs PossibleBorders::of(const Array<Index>& components) const {
   });
 }
 
+LowerCost::LowerCost(const SurfaceParts& parts, const PossibleBorders& borders, const BorderKind& kind,
+                     Objective& objective)
+    : parts_(parts), borders_(borders), kind_(kind), objective_(objective), seen_(parts.count(), 0) {
+  if (!kind.counts_sight) return;
+  seen_ = extra_costs_on(parts, borders.edges);
+  for (double& own : seen_) own *= objective.weights().cuts / std::sqrt(parts.area());
+}
+
 Array<Index> LowerCost::promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) {
   const Weights& weights = objective_.weights();
   const ComponentCosts present = costs_on(parts_, usual, weights);
   const PerComponent<Index> count = pieces();
   const PerComponent<double> lengths = lengths_on(parts_, borders_.edges);
+  const PerComponent<double> in_sight = extra_costs_on(parts_, usual.result.cut_edges);
   const double empty = objective_.quality(usual, progress).empty;
   const double of_square = weights.square * std::max(0.0, empty + 1 - 1 / well_filled);
   return those_of(chosen, [&](Index i) {
-    const double expected = left_with_borders * present.stretch[i] + price_of_island(usual.result, weights) * count[i] +
+    const double share = parts_.areas()[i] / parts_.area();
+    if (weights.cuts * in_sight[i] < kind_.least_in_sight * std::sqrt(parts_.areas()[i])) return false;
+    const double expected = kind_.stretch_kept * present.stretch[i] + kind_.stretch * share + seen_[i] +
+                            price_of_island(usual.result, weights) * count[i] +
                             weights.borders * lengths[i] / std::sqrt(parts_.area());
-    const double gain = present.whole[i] - expected + of_square * parts_.areas()[i] / parts_.area();
+    const double gain = present.whole[i] - expected + of_square * share;
     return gain > -error_of_estimates;
   });
 }
@@ -92,16 +103,27 @@ PerComponent<Index> LowerCost::pieces() const {
 
 Array<Index> LowerCost::gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) {
   const bool is_best = may_replace(bordered, usual, {});
-  objective_.note("boundaries at creases", objective_.quality(bordered, {}), Objective::infinity, is_best);
+  objective_.note(kind_.name, with_sight(bordered, {}), Objective::infinity, is_best);
   if (is_best) return chosen;
   const PerComponent<double> costs = costs_on(parts_, bordered, objective_.weights()).whole;
   const PerComponent<double> others = costs_on(parts_, usual, objective_.weights()).whole;
-  return those_of(chosen, [&](Index i) { return costs[i] < others[i]; });
+  return those_of(chosen, [&](Index i) { return costs[i] + seen_[i] < others[i]; });
 }
 
 bool LowerCost::may_replace(MadeMap& bordered, MadeMap& usual, const Progress& progress) {
   return is_as_good(bordered.result, usual.result, Objective::infinity) &&
-         objective_.cost_of(bordered, progress) < objective_.cost_of(usual, progress);
+         cost(with_sight(bordered, progress), objective_.weights()) < objective_.cost_of(usual, progress);
+}
+
+// The quality of a map, with what is seen of its further borders.
+Quality LowerCost::with_sight(MadeMap& bordered, const Progress& progress) const {
+  Quality out = objective_.quality(bordered, progress);
+  if (!kind_.counts_sight) return out;
+  const EdgeSet present(bordered.surface->surface().borders);
+  const VertexPairs& all = borders_.edges;
+  const VertexPairs own = filtered(all, [&](Eigen::Index e) { return present.has(all(e, 0), all(e, 1)); });
+  for (const double extra : extra_costs_on(parts_, own)) out.costly_cuts += extra / std::sqrt(parts_.area());
+  return out;
 }
 
 Array<Index> AlongLattice::promising(MadeMap& usual, const Array<Index>& chosen, const Progress&) {

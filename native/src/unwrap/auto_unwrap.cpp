@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "choices/division_choice.hpp"
 #include "choices/feature_choice.hpp"
+#include "choices/front_choice.hpp"
 #include "choices/marked_seams.hpp"
 #include "choices/one_sided_parts.hpp"
 #include "choices/tube_choice.hpp"
@@ -152,6 +153,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   if (options.creases && weights.strips > 0) {
     ends.tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
   }
+  if (options.creases && !is_pinned) ends.outline = outline_for(surface, given, of_map, share_of(choosing, 0, 0));
   Objective objective(weights, {of_map.of_map.square_share});
   const Symmetry symmetry = options.symmetric && !options.count ? Symmetry::tried : Symmetry::not_tried;
   const ChooseMap choose = [&](const Surface& on, const EndsInMap& its_ends, Objective& by, const Progress& share) {
@@ -168,7 +170,8 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     if (is_pinned) return usual;
     const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && its_ends.may_cut_open;
     const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
-    return best_division(whole, of_map, by, share);
+    const Made around = best_of_front(whole, its_ends.outline, given.target, by, share_of(share, 1, 1));
+    return best_division(around, of_map, by, share);
   };
   const Progress late = share_of(after_measuring(limit.unlimited()), is_packed ? mapping : 1, is_packed ? mapping : 1);
   const Made best = best_in_time(limit, objective, of_map, [&] {

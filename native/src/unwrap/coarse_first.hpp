@@ -16,7 +16,8 @@ namespace lsgp {
 struct EndsInMap {
   CreaseBorders creases;
   Tubes tubes;
-  bool may_cut_open = true;  // components without a map
+  VertexPairs outline{0, 2};  // of what the front sees; not on few triangles
+  bool may_cut_open = true;   // components without a map
 };
 
 // The best map of a surface by an objective.  Throws what `parameterize` and `complete_cones` throw.
