@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
@@ -13,6 +14,7 @@
 #include "packing/gaps.hpp"
 #include "packing/layout_search.hpp"
 #include "pipeline/validation.hpp"
+#include "plane/predicates.hpp"
 
 namespace lsgp {
 
@@ -95,18 +97,41 @@ Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island,
   return island_count;
 }
 
-// Lengths as multiples of a power of two, so that no square of one overflows or vanishes; no digit hangs on it.
+// Of islands that may be scaled, whose unit is the root of their area: what turning or scaling all of them loses is
+// rounded away, and the gap that layouts add for rounding is wider.
+constexpr double quantum = 0x1p-32;
+
+// Lengths as multiples of a power of two, so that no square of one overflows or vanishes and no digit hangs on it, and
+// of a further factor.
 struct Unit {
   int exponent = 0;
+  double factor = 1;
 
-  double of(double length) const { return std::ldexp(length, -exponent); }
-  double back(double length) const { return std::ldexp(length, exponent); }
+  double of(double length) const { return std::ldexp(length, -exponent) / factor; }
+  double back(double length) const { return std::ldexp(length * factor, exponent); }
 };
 
 // Of the texture coordinates, and of the area, the margin and blocks.
 struct Units {
   Unit given, packed;
+  double quantum = 0;  // of islands, 0: none
 };
+
+// The root of the area of all islands, 1 if it has none. It does not hang on the order of triangles.
+double root_of_area(const CornerUv& corner_uv, const std::vector<Index>& island, const Unit& unit) {
+  Array<double> areas;
+  for (std::size_t t = 0; t < island.size(); ++t) {
+    if (island[t] < 0) continue;
+    const auto row = 3 * static_cast<Eigen::Index>(t);
+    const auto corner = [&](Eigen::Index c) {
+      return Complex(unit.of(corner_uv(row + c, 0)), unit.of(corner_uv(row + c, 1)));
+    };
+    areas.push_back(std::abs(doubled_area(corner(0), corner(1), corner(2))) / 2);
+  }
+  std::sort(areas.begin(), areas.end());
+  const double root = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.0));
+  return root > std::numeric_limits<double>::min() ? root : 1;
+}
 
 Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
   double largest = 0;
@@ -132,7 +157,11 @@ Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, 
   static_assert(tiles_in_row <= 1 << exponent_of_row);
   const int away = units.given.exponent - units.packed.exponent;
   const bool may_stay = (options.tiles > 1 || options.snap > 0) && away <= exponent_of_row && -away <= most_exponent;
-  if (!has_place && !has_size && !may_stay) return units;
+  if (!has_place && !has_size && !may_stay) {
+    units.given.factor = root_of_area(corner_uv, island, units.given);
+    units.quantum = quantum;
+    return units;
+  }
   // What keeps its place or size has to fit to the area.
   if (units.given.exponent - units.packed.exponent > most_exponent) {
     throw Error(Code::wrong_parameter, concat("corner_uv holds numbers of about 2^", units.given.exponent,
@@ -196,11 +225,11 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
-  const auto [unit, packed_unit] = choose_units(corner_uv, island, given);
+  const auto [unit, packed_unit, quantum] = choose_units(corner_uv, island, given);
   const PackingOptions options = in_unit(given, packed_unit);
   CornerUv scaled = corner_uv;
   for (double& coordinate : scaled.reshaped()) coordinate = unit.of(coordinate);
-  const Array<Body> bodies = bodies_of(scaled, island, options);
+  const Array<Body> bodies = bodies_of(scaled, island, options, quantum);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
@@ -263,7 +292,7 @@ double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island,
   if (!(side > 0) || !std::isfinite(side)) return usual;
   // Gaps g take g * around + islands * g^2.
   const double gap = (std::sqrt(around * around + 4 * islands * most_gaps * area) - around) / (2 * islands);
-  return std::clamp(gap / (2 * side), least, usual);
+  return std::clamp(std::ceil(gap / (2 * side) / quantum) * quantum, least, usual);
 }
 
 }  // namespace lsgp

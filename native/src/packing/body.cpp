@@ -78,9 +78,14 @@ Complex squarest_turn(const Array<Complex>& hull) {
   return best;
 }
 
+Complex rounded_to(double quantum, Complex z) {
+  if (!(quantum > 0)) return z;
+  return {std::round(z.real() / quantum) * quantum, std::round(z.imag() / quantum) * quantum};
+}
+
 // The outline, area and hull of a body whose islands have these corners. Rounding does not hang on the order of
 // islands, triangles or corners.
-void add_shape(const Array<Array<Complex>>& corners_of, Body& body) {
+void add_shape(const Array<Array<Complex>>& corners_of, double quantum, Body& body) {
   constexpr double most = std::numeric_limits<double>::infinity();
   double left = most, bottom = most;
   for (const Index i : body.islands) {
@@ -94,7 +99,7 @@ void add_shape(const Array<Array<Complex>>& corners_of, Body& body) {
   Array<Outline> outlines;
   for (const Index i : body.islands) {
     Array<Complex> corners = corners_of[i];
-    for (Complex& z : corners) z -= body.origin;
+    for (Complex& z : corners) z = rounded_to(quantum, z - body.origin);
     for (auto corner = corners.begin(); corner != corners.end(); corner += 3) {
       const auto first = std::min_element(corner, corner + 3, [](Complex a, Complex b) { return is_before(a, b); });
       std::rotate(corner, first, corner + 3);
@@ -127,7 +132,8 @@ bool is_same(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
+Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
+                      double quantum) {
   Index island_count = 0;
   for (const Index i : island) island_count = std::max(island_count, i + 1);
   Array<Index> of_group;
@@ -159,7 +165,7 @@ Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& islan
     body.keeps_scale |= lock.scale;
     body.keeps_place |= lock.place;
   }
-  for (Body& body : bodies) add_shape(corners, body);
+  for (Body& body : bodies) add_shape(corners, quantum, body);
   std::stable_sort(bodies.begin(), bodies.end(), is_body_before);
   return bodies;
 }

@@ -40,7 +40,9 @@ struct Body {
 };
 
 // The bodies, the largest ones first, in an order that hangs on nothing but their shapes and what they keep.
-Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options);
+// quantum: of which the coordinates of outlines are multiples; 0: of none.
+Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
+                      double quantum);
 
 // The area without the margin at its border; if islands have none to fill, a square of side 1 beyond the margin.
 UvRectangle inside_margins(const PackingOptions& options, bool has_area);

@@ -20,6 +20,7 @@
 #include "lsgp/lsgp.hpp"
 #include "measures/map_comparison.hpp"
 #include "pipeline/validation.hpp"
+#include "unwrap/canonical_surface.hpp"
 #include "unwrap/coarse_first.hpp"
 #include "unwrap/presets.hpp"
 #include "unwrap/time_limit.hpp"
@@ -105,6 +106,7 @@ struct GivenForMap {
   const Surface& surface;
   const Cones& cones;
   const Pins& pins;
+  double unit = 1;  // of texture coordinates that are not packed
 };
 
 Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit) {
@@ -113,9 +115,6 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   const Progress& progress = limit.progress();
   const PresetRow preset = row_of(options.preset);
   const Weights weights = options.weights.value_or(preset.weights);
-  require_valid(from.surface);
-  require_vertices(from.surface, cones);
-  require_valid(weights, options);
   constexpr double measuring = 0.1;  // of the time, where seams are marked
   const MapOptions wanted = options.map.value_or(preset_options(options.preset));
   const GivenCones to_keep{cones, options.count, options.target, {}};
@@ -185,6 +184,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
                 objective.choices()};
   tell_further_cuts(along.further, out.result);
   tell_opened(opened, out.result);
+  if (!out.result.seamless) out.result.corner_uv *= from.unit;
   if (is_packed) {
     constexpr double looking = 0.3;  // of the time of packing
     const Progress last = share_of(after_measuring(limit.unlimited()), mapping, 1);
@@ -195,13 +195,29 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   return out;
 }
 
+Unwrapped unwrapped_as(const CanonicalSurface& canonical, const Cones& cones, const AutoUnwrapOptions& options,
+                       const TimeLimit& limit) try {
+  const Cones own = canonical.of(cones);
+  const Pins no_pins;
+  Unwrapped out = unwrapped({canonical.surface(), own, no_pins, canonical.size()}, canonical.of(options), limit);
+  canonical.restore(out);
+  return out;
+} catch (const Error& error) {
+  throw canonical.restored(error);
+}
+
 }  // namespace
 
 Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwrapOptions& options, const Pins& pins,
                       const Progress& progress) {
   const TimeLimit limit(options.seconds, progress);
+  require_valid(surface);
+  require_vertices(surface, cones);
+  require_valid(options.weights.value_or(row_of(options.preset).weights), options);
   try {
-    return unwrapped({surface, cones, pins}, options, limit);
+    if (!pins.corners.empty()) return unwrapped({surface, cones, pins}, options, limit);
+    const CanonicalSurface canonical(surface);
+    return unwrapped_as(canonical, cones, options, limit);
   } catch (const Error& error) {
     if (!limit.has_caused(error)) throw;
     throw Error(Code::time_limit,

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unwrap/canonical_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "mesh/canonical_order.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Of the farthest distance. Turning a position loses about 2^-52, so that of 10,000 coordinates one in a hundred times
+// one is rounded to another quantum.
+constexpr double quantum = 0x1p-32;
+// Heights of triangles, in quanta, from which on rounding costs less than float32 does.
+constexpr double least_height = 0x1p12;
+constexpr double same_place = 1e-9;  // of the farthest distance
+
+using Point = Eigen::RowVector3d;
+
+Point middle_of(const Surface& surface) {
+  Point sum = Point::Zero();
+  const Index corners = 3 * static_cast<Index>(surface.triangles.rows());
+  for (Index corner = 0; corner < corners; ++corner) sum += surface.positions.row(surface.triangles.data()[corner]);
+  return sum / corners;
+}
+
+double least_height_of(const Surface& surface) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    const auto side = [&](int c) -> Point {
+      return surface.positions.row(surface.triangles(f, (c + 1) % 3)) - surface.positions.row(surface.triangles(f, c));
+    };
+    const double longest = std::max({side(0).norm(), side(1).norm(), side(2).norm()});
+    least = std::min(least, longest > 0 ? side(0).cross(side(1)).norm() / longest : 0);
+  }
+  return least;
+}
+
+// The corners with which the triangles of a component begin, in the order of its shape.
+Array<Index> ordered_corners(const Component& component) {
+  Array<Index> out;
+  if (component.orientable) {
+    for (const Index h : order_by_shape(component.mesh)) out.push_back(component.source_corner(h));
+  } else {
+    for (const Index f : component.source_triangle) out.push_back(3 * f);
+  }
+  return out;
+}
+
+// The x axis points to the first corner of some, the y axis from it to the first of those that are the farthest away;
+// lengths of the given surface relative to the distance of the first one. Nothing where all are on a line.
+struct Pose {
+  Point middle = Point::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  double size = 1;
+
+  Point of(const Point& given) const { return (given - middle) / size * frame; }
+};
+
+Pose pose_of(const Surface& surface, const Point& middle, const Array<Index>& corners) {
+  const auto at = [&](Index corner) -> Point {
+    return surface.positions.row(surface.triangles.data()[corner]) - middle;
+  };
+  Pose out;
+  const double size = at(corners.front()).norm();
+  if (!(size > 0)) return out;
+  const Eigen::Vector3d axis = at(corners.front()).transpose() / size;
+  const auto aside = [&](Index corner) -> Eigen::Vector3d {
+    const Eigen::Vector3d from_middle = at(corner).transpose() / size;
+    return from_middle - from_middle.dot(axis) * axis;
+  };
+  double most = 0;
+  for (const Index corner : corners) most = std::max(most, aside(corner).norm());
+  if (!(most > same_place)) return out;
+  const Index farthest = *std::find_if(corners.begin(), corners.end(),
+                                       [&](Index corner) { return aside(corner).norm() >= most - same_place; });
+  out = {middle, {}, size};
+  out.frame.col(0) = axis;
+  out.frame.col(1) = aside(farthest).normalized();
+  out.frame.col(2) = out.frame.col(0).cross(out.frame.col(1));
+  return out;
+}
+
+// The rows in ascending order of their pairs, whatever the order of a pair's vertices.
+Array<Index> rows_in_order(const VertexPairs& pairs) {
+  Array<std::tuple<Index, Index, Index>> keys;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    const auto [low, high] = std::minmax(pairs(row, 0), pairs(row, 1));
+    keys.emplace_back(low, high, row);
+  }
+  std::sort(keys.begin(), keys.end());
+  Array<Index> out;
+  for (const auto& key : keys) out.push_back(std::get<2>(key));
+  return out;
+}
+
+}  // namespace
+
+CanonicalSurface::CanonicalSurface(const Surface& given) {
+  std::vector<Finding> unsaid;
+  const Topology topology = build_topology(given, {}, unsaid);
+  const Point middle = middle_of(given);
+  PerComponent<Array<Index>> corners;
+  const auto first_position = [&](const Array<Index>& its) -> Point {
+    return given.positions.row(given.triangles.data()[its.front()]);
+  };
+  double farthest = 0;
+  for (const Component& component : topology.components) {
+    corners.push_back(ordered_corners(component));
+    farthest = std::max(farthest, (first_position(corners.back()) - middle).norm());
+  }
+  // The larger ones first, those as large by where they are as seen from the one that reaches the farthest.
+  std::stable_sort(corners.begin(), corners.end(),
+                   [](const Array<Index>& a, const Array<Index>& b) { return a.size() > b.size(); });
+  const auto outermost = std::find_if(corners.begin(), corners.end(), [&](const Array<Index>& its) {
+    return (first_position(its) - middle).norm() >= (1 - same_place) * farthest;
+  });
+  const Pose pose = outermost == corners.end() ? Pose() : pose_of(given, middle, *outermost);
+  size_ = pose.size;
+  const auto place = [&](const Array<Index>& its) {
+    constexpr double apart = 1e-6;
+    const Eigen::Array<double, 1, 3> at = (pose.of(first_position(its)).array() / apart).round();
+    return std::tuple(-static_cast<double>(its.size()), at[0], at[1], at[2]);
+  };
+  std::stable_sort(corners.begin(), corners.end(),
+                   [&](const Array<Index>& a, const Array<Index>& b) { return place(a) < place(b); });
+  Array<Index> order;
+  for (const Array<Index>& its : corners) order.insert(order.end(), its.begin(), its.end());
+  number(given, order);
+  carry(given, pose.frame);
+  for (Eigen::Index v = 0; v < given.positions.rows(); ++v) {
+    surface_.positions.row(v) = pose.of(given.positions.row(source_vertex_[v]));
+  }
+  if (least_height_of(surface_) > least_height * quantum) {
+    surface_.positions = (surface_.positions / quantum).array().round() * quantum;
+  }
+}
+
+// corners: with which triangles begin, in their order; those in no component follow.
+void CanonicalSurface::number(const Surface& given, const Array<Index>& corners) {
+  const Index vertex_count = static_cast<Index>(given.positions.rows());
+  const Index triangle_count = static_cast<Index>(given.triangles.rows());
+  own_vertex_.assign(vertex_count, none);
+  PerTriangle<char> is_numbered(triangle_count, 0);
+  const auto take = [&](Index vertex) {
+    if (own_vertex_[vertex] != none) return;
+    own_vertex_[vertex] = static_cast<Index>(source_vertex_.size());
+    source_vertex_.push_back(vertex);
+  };
+  const auto append = [&](Index corner) {
+    is_numbered[corner / 3] = 1;
+    source_corner_.push_back(corner);
+    for (int c = 0; c < 3; ++c, corner = next(corner)) take(given.triangles.data()[corner]);
+  };
+  for (const Index corner : corners) append(corner);
+  Array<std::pair<std::array<Index, 3>, Index>> others;
+  for (Index f = 0; f < triangle_count; ++f) {
+    if (is_numbered[f]) continue;
+    std::array<Index, 3> own{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index known = own_vertex_[given.triangles(f, static_cast<Eigen::Index>(c))];
+      own[c] = known == none ? vertex_count : known;
+    }
+    others.emplace_back(own, 3 * f);
+  }
+  std::sort(others.begin(), others.end());
+  for (const auto& [own, corner] : others) append(corner);
+  for (Index v = 0; v < vertex_count; ++v) take(v);
+}
+
+// All but the positions.
+void CanonicalSurface::carry(const Surface& given, const Eigen::Matrix3d& frame) {
+  surface_.positions.resize(given.positions.rows(), 3);
+  surface_.triangles.resize(given.triangles.rows(), 3);
+  for (Eigen::Index f = 0; f < given.triangles.rows(); ++f) {
+    Index corner = source_corner_[f];
+    for (Eigen::Index c = 0; c < 3; ++c, corner = next(corner)) {
+      surface_.triangles(f, c) = own_vertex_[given.triangles.data()[corner]];
+    }
+  }
+  surface_.may_collapse = given.may_collapse;
+  if (given.edges) {
+    VertexPairs own = *given.edges;
+    for (Index& vertex : own.reshaped()) vertex = own_vertex_[vertex];
+    const Array<Index> rows = rows_in_order(own);
+    surface_.edges = own(rows, Eigen::all);
+    surface_.cut_costs.resize(given.cut_costs.size());
+    for (Eigen::Index e = 0; e < given.cut_costs.size(); ++e) surface_.cut_costs[e] = given.cut_costs[rows[e]];
+  }
+  surface_.seams = of(given.seams);
+  surface_.borders = of(given.borders);
+  surface_.features = of(given.features);
+  const auto permuted = [&](const Eigen::VectorXd& at_vertices) {
+    Eigen::VectorXd out(at_vertices.size());
+    for (Eigen::Index v = 0; v < out.size(); ++v) out[v] = at_vertices[source_vertex_[v]];
+    return out;
+  };
+  surface_.importance = permuted(given.importance);
+  surface_.scale = permuted(given.scale);
+  surface_.directions.resize(given.directions.rows(), 3);
+  for (Eigen::Index f = 0; f < given.directions.rows(); ++f) {
+    surface_.directions.row(f) = given.directions.row(source_corner_[f] / 3) * frame;
+  }
+}
+
+VertexPairs CanonicalSurface::of(const VertexPairs& given) const {
+  VertexPairs own = given;
+  for (Index& vertex : own.reshaped()) vertex = own_vertex_[vertex];
+  return own(rows_in_order(own), Eigen::all);
+}
+
+Cones CanonicalSurface::of(const Cones& given) const {
+  Array<std::pair<Index, std::optional<double>>> own;
+  for (std::size_t i = 0; i < given.vertices.size(); ++i) {
+    own.emplace_back(own_vertex_[given.vertices[i]], given.angles[i]);
+  }
+  std::stable_sort(own.begin(), own.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  Cones out;
+  for (const auto& [vertex, angle] : own) {
+    out.vertices.push_back(vertex);
+    out.angles.push_back(angle);
+  }
+  return out;
+}
+
+AutoUnwrapOptions CanonicalSurface::of(const AutoUnwrapOptions& given) const {
+  AutoUnwrapOptions out = given;
+  out.sharp = of(given.sharp);
+  if (!out.map) return out;
+  Options& of_map = out.map->of_map;
+  for (auto& [vertex, turning] : of_map.loop_turning) vertex = own_vertex_[vertex];
+  if (of_map.seamless && of_map.seamless->tile_size) *of_map.seamless->tile_size /= size_;
+  return out;
+}
+
+void CanonicalSurface::restore(std::vector<Index>& vertices) const {
+  for (Index& vertex : vertices) vertex = source_vertex_[vertex];
+}
+
+void CanonicalSurface::restore(VertexPairs& pairs) const {
+  for (Index& vertex : pairs.reshaped()) vertex = source_vertex_[vertex];
+}
+
+void CanonicalSurface::restore_sorted_triangles(std::vector<Index>& triangles) const {
+  for (Index& triangle : triangles) triangle = source_corner_[triangle] / 3;
+  std::sort(triangles.begin(), triangles.end());
+}
+
+void CanonicalSurface::restore(Elements& elements) const {
+  if (elements.kind == ElementKind::triangles) return restore_sorted_triangles(elements.indices);
+  restore(elements.indices);
+  if (elements.kind == ElementKind::vertices) std::sort(elements.indices.begin(), elements.indices.end());
+}
+
+void CanonicalSurface::restore(std::vector<Finding>& findings) const {
+  for (Finding& finding : findings) restore(finding.elements);
+}
+
+void CanonicalSurface::restore(Eigen::VectorXd& at_vertices) const {
+  const Eigen::VectorXd own = at_vertices;
+  for (Eigen::Index v = 0; v < own.size(); ++v) at_vertices[source_vertex_[v]] = own[v];
+}
+
+void CanonicalSurface::restore(SeamlessReport& report) const {
+  report.tile_size *= size_;
+  for (SeamlessCut& cut : report.cuts) {
+    cut.tail = source_vertex_[cut.tail];
+    cut.head = source_vertex_[cut.head];
+  }
+  for (std::vector<Index>* vertices :
+       {&report.flat_cones, &report.merged_cones, &report.relaxed_cones, &report.creases}) {
+    restore(*vertices);
+  }
+}
+
+void CanonicalSurface::restore(Result& result) const {
+  const CornerUv own_uv = result.corner_uv;
+  const std::vector<Index> own_island = result.island;
+  const Eigen::VectorXd own_errors = result.direction_errors;
+  for (Eigen::Index f = 0; f < ssize(own_island); ++f) {
+    Index corner = source_corner_[f];
+    element(result.island, corner / 3) = element(own_island, f);
+    if (own_errors.size() > 0) result.direction_errors[corner / 3] = own_errors[f];
+    for (Eigen::Index c = 0; c < 3; ++c, corner = next(corner)) result.corner_uv.row(corner) = own_uv.row(3 * f + c);
+  }
+  Array<Index> number(own_island.size(), none);
+  Index islands = 0;
+  for (Index& island : result.island) {
+    if (island < 0) continue;
+    if (number[island] == none) number[island] = islands++;
+    island = number[island];
+  }
+  restore(result.cut_edges);
+  restore(result.required_cuts);
+  for (std::vector<Index>& path : result.cut_paths) restore(path);
+  restore(result.cones);
+  for (std::vector<Index>* triangles : {&result.flipped, &result.overlapping}) restore_sorted_triangles(*triangles);
+  restore(result.wrong_angle_sums);
+  std::sort(result.wrong_angle_sums.begin(), result.wrong_angle_sums.end());
+  restore(result.log_scale);
+  if (result.seamless) restore(*result.seamless);
+  if (result.features) {
+    for (ReleasedFeature& feature : result.features->released) restore(feature.path);
+  }
+  restore(result.warnings);
+}
+
+void CanonicalSurface::restore(Unwrapped& unwrapped) const {
+  restore(unwrapped.result);
+  restore(unwrapped.borders);
+  if (!unwrapped.placement) return;
+  restore(unwrapped.placement->cones);
+  restore(unwrapped.placement->log_scale);
+  restore(unwrapped.placement->warnings);
+}
+
+Error CanonicalSurface::restored(const Error& error) const {
+  Elements elements = error.elements();
+  restore(elements);
+  return {error.code(), error.what(), std::move(elements)};
+}
+
+}  // namespace lsgp
