@@ -20,7 +20,7 @@ class ShapeOrder {
  public:
   explicit ShapeOrder(const HalfedgeMesh& mesh);
 
-  Index first() const;
+  Index first(const Eigen::RowVector3d& center) const;
   Array<Index> from(Index first) const;
 
  private:
@@ -97,7 +97,7 @@ void ShapeOrder::keep_alike(Array<Index>& halfedges) const {
   for (const Walker& walker : left) halfedges.push_back(walker.walk.reached.front());
 }
 
-Index ShapeOrder::first() const {
+Index ShapeOrder::first(const Eigen::RowVector3d& center) const {
   Array<Index> left(mesh_.halfedge_count());
   std::iota(left.begin(), left.end(), Index{0});
   const auto tail = [&](Index h) { return mesh_.positions.row(mesh_.origin(h)); };
@@ -106,7 +106,13 @@ Index ShapeOrder::first() const {
   keep_largest(left, within, [&](Index h) { return distance(mesh_.origin(h)); });
   keep_largest(left, within, [&](Index h) { return (head(h) - tail(h)).squaredNorm(); });
   if (left.size() > 1) keep_alike(left);
-  // What is alike all over, or too far to tell, is chosen by coordinates.
+  // What is alike all over, or as far as the walks went.
+  double most = 0;
+  for (const Index h : left) most = std::max(most, (tail(h) - center).squaredNorm());
+  const auto from_center = [&](Index h) { return (tail(h) - center).squaredNorm(); };
+  keep_largest(left, same_place * most, from_center);
+  keep_largest(left, same_place * most, [&](Index h) { return from_center(next(h)); });
+  keep_largest(left, same_place * most, [&](Index h) { return from_center(prev(h)); });
   const double apart = same_place * std::sqrt(farthest_);
   for (int axis = 0; axis < 3; ++axis) keep_largest(left, apart, [&](Index h) { return -tail(h)[axis]; });
   for (int axis = 0; axis < 3; ++axis) keep_largest(left, apart, [&](Index h) { return -head(h)[axis]; });
@@ -132,9 +138,9 @@ Array<Index> ShapeOrder::from(Index first) const {
 
 }  // namespace
 
-Array<Index> order_by_shape(const HalfedgeMesh& mesh) {
+Array<Index> order_by_shape(const HalfedgeMesh& mesh, const Eigen::RowVector3d& center) {
   const ShapeOrder order(mesh);
-  return order.from(order.first());
+  return order.from(order.first(center));
 }
 
 }  // namespace lsgp

@@ -45,10 +45,10 @@ double least_height_of(const Surface& surface) {
 }
 
 // The corners with which the triangles of a component begin, in the order of its shape.
-Array<Index> ordered_corners(const Component& component) {
+Array<Index> ordered_corners(const Component& component, const Point& center) {
   Array<Index> out;
   if (component.orientable) {
-    for (const Index h : order_by_shape(component.mesh)) out.push_back(component.source_corner(h));
+    for (const Index h : order_by_shape(component.mesh, center)) out.push_back(component.source_corner(h));
   } else {
     for (const Index f : component.source_triangle) out.push_back(3 * f);
   }
@@ -82,7 +82,8 @@ Pose pose_of(const Surface& surface, const Point& middle, const Array<Index>& co
   if (!(most > same_place)) return out;
   const Index farthest = *std::find_if(corners.begin(), corners.end(),
                                        [&](Index corner) { return aside(corner).norm() >= most - same_place; });
-  out = {middle, {}, size};
+  out.middle = middle;
+  out.size = size;
   out.frame.col(0) = axis;
   out.frame.col(1) = aside(farthest).normalized();
   out.frame.col(2) = out.frame.col(0).cross(out.frame.col(1));
@@ -114,7 +115,7 @@ CanonicalSurface::CanonicalSurface(const Surface& given) {
   };
   double farthest = 0;
   for (const Component& component : topology.components) {
-    corners.push_back(ordered_corners(component));
+    corners.push_back(ordered_corners(component, middle));
     farthest = std::max(farthest, (first_position(corners.back()) - middle).norm());
   }
   // The larger ones first, those as large by where they are as seen from the one that reaches the farthest.

@@ -135,3 +135,44 @@ def test_order_of_cones_changes_nothing(seed: int) -> None:
     angles = [dict(zip(r.cones.tolist(), r.cone_angles.tolist(), strict=True)) for r in (one, two)]
     assert angles[1] == pytest.approx(angles[0], abs=1e-9)
     assert oracle.metric_gap(one.corner_uv, two.corner_uv) <= 1e-9
+
+
+def given_otherwise(mesh: meshes.Mesh, seed: int) -> meshes.Mesh:
+    """The same surface with other numbers of vertices and triangles, turned, moved and scaled."""
+    return meshes.transform(meshes.renumber(mesh, seed)[0], seed, scale=(1.0, 1000.0, 0.01)[seed % 3])
+
+
+def press(mesh: meshes.Mesh, preset: lsgp.Preset) -> tuple[int, float, float]:
+    """Islands, cost, and the part of the square that is filled."""
+    result = lsgp.auto_unwrap(surface(mesh), preset=preset)
+    cost = min(choice.cost for choice in result.choices if choice.is_best and choice.cost is not None)
+    sides = np.diff(result.corner_uv[result.solved], axis=1)
+    area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]).sum() / 2
+    return len(np.unique(result.island[result.solved])), cost, area
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_a_press_makes_the_same_map_of_the_same_surface(preset: lsgp.Preset) -> None:
+    families = [
+        meshes.bumpy_sphere(3),
+        meshes.flower(3),
+        meshes.two_horned(3),
+        meshes.forked(3),
+        meshes.hill(),
+        meshes.torus(),
+        meshes.cylinder(),
+        meshes.cube(4),
+        meshes.plate(3),
+        meshes.perforated_slab(2),
+        meshes.double_torus(),
+        meshes.merge([meshes.flower(2), meshes.torus(), meshes.cube(3), meshes.bumpy_sphere(2)]),
+    ]
+    other = []
+    for number, mesh in enumerate(families):
+        islands, cost, square = press(mesh, preset)
+        for seed in range(3):
+            found = press(given_otherwise(mesh, 3 * number + seed), preset)
+            if found != (islands, pytest.approx(cost, rel=0.01, abs=0.01), pytest.approx(square, rel=0.02)):
+                other.append((number, seed, (islands, cost, square), found))
+    # A coordinate that lies between two quanta to the last digit may be rounded to the other one.
+    assert len(other) <= 1, other
