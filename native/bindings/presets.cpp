@@ -64,7 +64,8 @@ lsgp::AutoUnwrapOptions to_auto_unwrap_options(const py::dict& values) {
   return options;
 }
 
-// The map, where its surface ends, the placement of its cones, and what it was chosen from.
+// The map, where its surface ends, the placement of its cones, what it was chosen from, and its islands as they were
+// packed for that.
 py::dict auto_unwrap(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const IndexArray& sharp,
                      const py::dict& option_values, const PinArrays& pin_arrays, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
@@ -83,6 +84,10 @@ py::dict auto_unwrap(const SurfaceArrays& surface_arrays, const ConeArrays& cone
   out["borders"] = to_array(found.borders);
   out["placement"] = found.placement ? py::object(to_dict(*found.placement)) : py::none();
   out["choices"] = choices;
+  out["packed_quickly"] = py::none();
+  if (const auto& packed = found.packed_quickly) {
+    out["packed_quickly"] = to_array(packed->data(), {static_cast<py::ssize_t>(packed->rows() / 3), 3, 2});
+  }
   return out;
 }
 

@@ -100,6 +100,8 @@ struct Unwrapped {
   VertexPairs borders;  // (b, 2) where the surface ends in this map: its own, and those at creases
   std::optional<Placement> placement;
   std::vector<Choice> choices;
+  // The islands packed quickly with their usual margin, as they were for the choice; none where no square is filled.
+  std::optional<CornerUv> packed_quickly;
 };
 
 // cones: are kept. A component without cones gets the number that its stretch requires, which may be 0; one whose cones

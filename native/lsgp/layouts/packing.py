@@ -249,13 +249,21 @@ def turns_of(result: Result) -> Turned:
 
 
 def laid_out(
-    surface: Surface, result: Result, packing: Packing, texels: TexelLayout | None, progress: Progress | None = None
+    surface: Surface,
+    result: Result,
+    packing: Packing,
+    texels: TexelLayout | None,
+    progress: Progress | None = None,
+    *,
+    packed_quickly: FloatArray | None = None,
 ) -> LaidOut:
     """The result with its islands packed and at a texel density, as they are wanted.
 
     result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for, and
         only by quarters where features run straight.
-    texels: without UDIM tiles, and without `Packing.inside`.  Raises InputError, Cancelled.
+    texels: without UDIM tiles, and without `Packing.inside`. packed_quickly: (m, 3, 2), the islands in a square of their
+        own with the effort "quick" and the usual margin, so that they need not be packed again; None: not known.
+    Raises InputError, Cancelled.
     """
     if packing.inside is not None:
         result = with_less_inside(surface, result, packing.inside, share_of(progress, 0.0, _LOOKING_INSIDE))
@@ -273,12 +281,17 @@ def laid_out(
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
+    is_usual = replace(packing, pack=None, up=None) == Packing(effort="quick")
     margin = packing.margin
     if margin is None:
         margin = _lsgp.usual_margin(result.corner_uv, result.island, packing.udim or 1)
     pack: Pack = "tight"
     try:
-        packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)
+        if is_usual and packed_quickly is not None:
+            packed, stacked = replace(result, corner_uv=packed_quickly), none
+            tell(progress, 1.0)
+        else:
+            packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)
         if packing.up is not None and how["turned"] and packing.udim in (None, 1) and packing.stack is None:
             turns = upright_turns(surface, packed.corner_uv, packed.island, packing.up)
             packed = replace(packed, corner_uv=stand_upright(packed.corner_uv, packed.island, turns, margin=margin))

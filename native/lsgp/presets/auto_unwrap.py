@@ -97,11 +97,13 @@ class ChosenMap:
     """A map as it is chosen, with its islands side by side.
 
     surface: with the borders of the map. placement: of automatic cones; None without.
+    packed_quickly: (m, 3, 2), its islands as they were packed for the choice, as for `laid_out`; None: they were not.
     """
 
     surface: Surface
     result: Result
     placement: Placement | None
+    packed_quickly: FloatArray | None
 
 
 def choose_map(
@@ -162,7 +164,7 @@ def choose_map(
     found = _lsgp.auto_unwrap(surface_arrays(surface), given, marked, values, pin_arrays(pins), progress)
     placement = None if found["placement"] is None else Placement(**found["placement"])
     result = replace(to_result(found["result"], found["borders"]), choices=[Choice(*one) for one in found["choices"]])
-    return ChosenMap(replace(surface, borders=found["borders"]), result, placement)
+    return ChosenMap(replace(surface, borders=found["borders"]), result, placement, found["packed_quickly"])
 
 
 def auto_unwrap(
@@ -266,7 +268,8 @@ def auto_unwrap(
     if packs:
         packing = replace(packing, effort=preset_effort(preset) if effort is None else effort)
         packing = in_time(packing, is_late=seconds is not None and time.monotonic() - begin > seconds)
-        result = laid_out(found.surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
+        placing = share_of(progress, PACKING, 1.0)
+        result = laid_out(found.surface, result, packing, texels, placing, packed_quickly=found.packed_quickly).result
     elif texels is not None:
         result = at_texel_density(found.surface, result, texels)
     return with_tiny_findings(result)

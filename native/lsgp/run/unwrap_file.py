@@ -83,6 +83,7 @@ class Run:
     triangulation: Triangulation | None = None
     surface: Surface | None = None
     placement: Placement | None = None
+    packed_quickly: NDArray[np.float64] | None = None  # (m, 3, 2), as of `choose_map`
     strokes: Strokes | None = None
     packed: Packed | None = None
     texels: TexelDensity | None = None
@@ -129,7 +130,8 @@ def unwrap_file(
     if packing is not None:
         packing = in_time(packing, is_late=_seconds_left(args, begin) == 0)
         with run.stage("pack"):
-            laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
+            placing = share_of(progress, PACKING, 1.0)
+            laid = laid_out(run.surface, result, packing, layout, placing, packed_quickly=run.packed_quickly)
         result = laid.result
         seen = result.solved & ~laid.stacked & ~_duplicates(result)
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
@@ -286,5 +288,5 @@ def _map(
             seconds=left,
             progress=progress,
         )
-    run.surface, run.placement = found.surface, found.placement
+    run.surface, run.placement, run.packed_quickly = found.surface, found.placement, found.packed_quickly
     return file, found.result

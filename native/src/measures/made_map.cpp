@@ -35,7 +35,7 @@ MapThrough maps_of(std::shared_ptr<BorderedSurface> surface, const Pins& pins) {
     Options of_map = options.through(cones.cones);
     of_map.mirrored_cuts = of_map.mirrored_cuts || cones.is_symmetric;
     Result result = surface->solver.parameterize(cones.cones, of_map, pins, progress);
-    return std::make_shared<MadeMap>(MadeMap{surface, cones, std::move(result), options, {}});
+    return std::make_shared<MadeMap>(MadeMap{surface, cones, std::move(result), options, {}, {}});
   };
 }
 

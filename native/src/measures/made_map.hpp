@@ -46,9 +46,11 @@ struct MadeMap {
   Result result;
   MapOptions options;              // that it was made with
   std::optional<Quality> quality;  // once it is measured, without its asymmetry
+  // The layout that this was measured on, with the usual margin; none where it is not packed.
+  std::optional<CornerUv> packed_quickly;
 };
 
-// Shared by choices that follow each other; only `quality` and the findings of the result change.
+// Shared by choices that follow each other; only what is measured and the findings of the result change.
 using Made = std::shared_ptr<MadeMap>;
 
 // The map of one surface through cones, with some options.  Throws what `parameterize` throws.

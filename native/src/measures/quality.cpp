@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
@@ -34,16 +35,16 @@ double area_of(const Result& result, const CornerUv& corner_uv) {
   return sum;
 }
 
-// The part of the unit square that islands fill once they are packed quickly; 0 if they cannot be.
-double filled_when_packed(const Result& result, const Progress& progress) try {
+// The islands in the unit square; none if they cannot be packed.
+std::optional<CornerUv> packed_quickly(const Result& result, const Progress& progress) try {
   PackingOptions options;
   options.turns = turns_of(result);
   options.effort = PackingEffort::quick;
   options.margin = usual_margin(result.corner_uv, result.island);
-  return area_of(result, pack_islands(result.corner_uv, result.island, options, progress));
+  return pack_islands(result.corner_uv, result.island, options, progress);
 } catch (const Error& error) {
   if (error_kind(error.code()) != ErrorKind::input) throw;
-  return 0;
+  return {};
 }
 
 // The part of all their boxes that islands fill.
@@ -88,12 +89,14 @@ double bent_tubes(const MadeMap& made) {
   return area / parts.area();
 }
 
-Quality measure(const MadeMap& made, SquareShare share, const Progress& progress) {
+Quality measure(MadeMap& made, SquareShare share, const Progress& progress) {
   constexpr double least_filled = 1e-3;
   const SurfaceParts& parts = made.surface->parts;
   const Result& result = made.result;
   const double size = parts.area() > 0 ? std::sqrt(parts.area()) : 1;
   const bool is_packed = share.squares <= 1 && !result.seamless;
+  if (is_packed) made.packed_quickly = packed_quickly(result, progress);
+  const double of_square = made.packed_quickly ? area_of(result, *made.packed_quickly) : 0;
   Quality out;
   out.left_out = static_cast<Index>(
       std::count_if(result.island.begin(), result.island.end(), [](Index island) { return island < 0; }));
@@ -105,7 +108,7 @@ Quality measure(const MadeMap& made, SquareShare share, const Progress& progress
   out.costly_cuts = std::accumulate(extra.begin(), extra.end(), 0.0) / size;
   out.borders = length_of(parts.surface(), parts.surface().borders) / size;
   out.cones = count_by_area(parts, result.cones);
-  out.empty = 1 / std::max(is_packed ? filled_when_packed(result, progress) : filled_boxes(result), least_filled) - 1;
+  out.empty = 1 / std::max(is_packed ? of_square : filled_boxes(result), least_filled) - 1;
   out.on_lattice = cost_on_lattice(result);
   out.bent_tubes = bent_tubes(made);
   return out;

@@ -181,7 +181,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   });
 
   Unwrapped out{std::move(best->result), best->surface->surface().borders, std::move(best->cones.placement),
-                objective.choices()};
+                objective.choices(), std::move(best->packed_quickly)};
   tell_further_cuts(along.further, out.result);
   tell_opened(opened, out.result);
   if (!out.result.seamless) out.result.corner_uv *= from.unit;
@@ -190,7 +190,14 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     const Progress last = share_of(after_measuring(limit.unlimited()), mapping, 1);
     if (options.inside) scale_hidden(whole, *options.inside, out.result, share_of(last, 0, looking));
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
-    pack(out.result, options.margin, effort, options.inside ? share_of(last, looking, 1) : last);
+    const Progress packing = options.inside ? share_of(last, looking, 1) : last;
+    const bool is_usual = effort == PackingEffort::quick && !options.margin && !options.inside;
+    if (is_usual && out.packed_quickly) {
+      out.result.corner_uv = *out.packed_quickly;
+      tell(packing, 1);
+    } else {
+      pack(out.result, options.margin, effort, packing);
+    }
   }
   return out;
 }

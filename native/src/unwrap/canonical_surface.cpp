@@ -282,16 +282,23 @@ void CanonicalSurface::restore(SeamlessReport& report) const {
   }
 }
 
+void CanonicalSurface::restore(CornerUv& corner_uv) const {
+  const CornerUv own = corner_uv;
+  for (Eigen::Index f = 0; f < ssize(source_corner_); ++f) {
+    Index corner = source_corner_[f];
+    for (Eigen::Index c = 0; c < 3; ++c, corner = next(corner)) corner_uv.row(corner) = own.row(3 * f + c);
+  }
+}
+
 void CanonicalSurface::restore(Result& result) const {
-  const CornerUv own_uv = result.corner_uv;
   const std::vector<Index> own_island = result.island;
   const Eigen::VectorXd own_errors = result.direction_errors;
   for (Eigen::Index f = 0; f < ssize(own_island); ++f) {
-    Index corner = source_corner_[f];
-    element(result.island, corner / 3) = element(own_island, f);
-    if (own_errors.size() > 0) result.direction_errors[corner / 3] = own_errors[f];
-    for (Eigen::Index c = 0; c < 3; ++c, corner = next(corner)) result.corner_uv.row(corner) = own_uv.row(3 * f + c);
+    const Index source = source_corner_[f] / 3;
+    element(result.island, source) = element(own_island, f);
+    if (own_errors.size() > 0) result.direction_errors[source] = own_errors[f];
   }
+  restore(result.corner_uv);
   Array<Index> number(own_island.size(), none);
   Index islands = 0;
   for (Index& island : result.island) {
@@ -317,6 +324,7 @@ void CanonicalSurface::restore(Result& result) const {
 void CanonicalSurface::restore(Unwrapped& unwrapped) const {
   restore(unwrapped.result);
   restore(unwrapped.borders);
+  if (unwrapped.packed_quickly) restore(*unwrapped.packed_quickly);
   if (!unwrapped.placement) return;
   restore(unwrapped.placement->cones);
   restore(unwrapped.placement->log_scale);

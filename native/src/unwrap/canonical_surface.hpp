@@ -44,6 +44,7 @@ class CanonicalSurface {
   void restore(std::vector<Index>& vertices) const;
   void restore(VertexPairs& pairs) const;
   void restore(Eigen::VectorXd& at_vertices) const;
+  void restore(CornerUv& corner_uv) const;
   void restore(SeamlessReport& report) const;
   void restore(Result& result) const;
   void restore_sorted_triangles(std::vector<Index>& triangles) const;
