@@ -261,8 +261,8 @@ def laid_out(
 
     result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for, and
         only by quarters where features run straight.
-    texels: without UDIM tiles, and without `Packing.inside`. packed_quickly: (m, 3, 2), the islands in a square of their
-        own with the effort "quick" and the usual margin, so that they need not be packed again; None: not known.
+    texels: without UDIM tiles, and without `Packing.inside`. packed_quickly: (m, 3, 2), the islands in the square with
+        the effort "quick" and the usual margin, so that they need not be packed again; None: not known.
     Raises InputError, Cancelled.
     """
     if packing.inside is not None:
