@@ -158,6 +158,7 @@ Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, 
   const int away = units.given.exponent - units.packed.exponent;
   const bool may_stay = (options.tiles > 1 || options.snap > 0) && away <= exponent_of_row && -away <= most_exponent;
   if (!has_place && !has_size && !may_stay) {
+    if (options.snap > 0) return units;  // islands begin at blocks, as they are
     units.given.factor = root_of_area(corner_uv, island, units.given);
     units.quantum = quantum;
     return units;

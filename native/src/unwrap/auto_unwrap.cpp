@@ -106,7 +106,6 @@ struct GivenForMap {
   const Surface& surface;
   const Cones& cones;
   const Pins& pins;
-  double unit = 1;  // of texture coordinates that are not packed
 };
 
 Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, const TimeLimit& limit) {
@@ -184,7 +183,6 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
                 objective.choices(), std::move(best->packed_quickly)};
   tell_further_cuts(along.further, out.result);
   tell_opened(opened, out.result);
-  if (!out.result.seamless) out.result.corner_uv *= from.unit;
   if (is_packed) {
     constexpr double looking = 0.3;  // of the time of packing
     const Progress last = share_of(after_measuring(limit.unlimited()), mapping, 1);
@@ -206,8 +204,8 @@ Unwrapped unwrapped_as(const CanonicalSurface& canonical, const Cones& cones, co
                        const TimeLimit& limit) try {
   const Cones own = canonical.of(cones);
   const Pins no_pins;
-  Unwrapped out = unwrapped({canonical.surface(), own, no_pins, canonical.size()}, canonical.of(options), limit);
-  canonical.restore(out);
+  Unwrapped out = unwrapped({canonical.surface(), own, no_pins}, canonical.of(options), limit);
+  canonical.restore(cones, out);
   return out;
 } catch (const Error& error) {
   throw canonical.restored(error);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "mesh/canonical_order.hpp"
@@ -18,23 +19,29 @@ namespace {
 
 // Of the farthest distance. Turning a position loses about 2^-52, so that of 10,000 coordinates one in a hundred times
 // one is rounded to another quantum.
-constexpr double quantum = 0x1p-32;
+constexpr double quantum = 0x1p-36;
 // Heights of triangles, in quanta, from which on rounding costs less than float32 does.
 constexpr double least_height = 0x1p12;
 constexpr double same_place = 1e-9;  // of the farthest distance
 
 using Point = Eigen::RowVector3d;
 
+// Of the corners of triangles that are part of the surface.
 Point middle_of(const Surface& surface) {
   Point sum = Point::Zero();
-  const Index corners = 3 * static_cast<Index>(surface.triangles.rows());
-  for (Index corner = 0; corner < corners; ++corner) sum += surface.positions.row(surface.triangles.data()[corner]);
-  return sum / corners;
+  Index corners = 0;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (is_collapsed(surface.triangles, f)) continue;
+    for (int c = 0; c < 3; ++c) sum += surface.positions.row(surface.triangles(f, c));
+    corners += 3;
+  }
+  return corners > 0 ? Point(sum / corners) : sum;
 }
 
 double least_height_of(const Surface& surface) {
   double least = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (is_collapsed(surface.triangles, f)) continue;
     const auto side = [&](int c) -> Point {
       return surface.positions.row(surface.triangles(f, (c + 1) % 3)) - surface.positions.row(surface.triangles(f, c));
     };
@@ -255,6 +262,17 @@ void CanonicalSurface::restore_sorted_triangles(std::vector<Index>& triangles) c
   std::sort(triangles.begin(), triangles.end());
 }
 
+// first: which come first.
+void CanonicalSurface::restore_sorted(const std::vector<Index>& first, std::vector<Index>& cones,
+                                      std::vector<double>& angles) const {
+  restore(cones);
+  const std::unordered_set<Index> is_first(first.begin(), first.end());
+  Array<std::tuple<bool, Index, double>> keys;
+  for (std::size_t i = 0; i < cones.size(); ++i) keys.emplace_back(is_first.count(cones[i]) == 0, cones[i], angles[i]);
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < keys.size(); ++i) std::tie(std::ignore, cones[i], angles[i]) = keys[i];
+}
+
 void CanonicalSurface::restore(Elements& elements) const {
   if (elements.kind == ElementKind::triangles) return restore_sorted_triangles(elements.indices);
   restore(elements.indices);
@@ -309,7 +327,7 @@ void CanonicalSurface::restore(Result& result) const {
   restore(result.cut_edges);
   restore(result.required_cuts);
   for (std::vector<Index>& path : result.cut_paths) restore(path);
-  restore(result.cones);
+  restore_sorted({}, result.cones, result.cone_angles);
   for (std::vector<Index>* triangles : {&result.flipped, &result.overlapping}) restore_sorted_triangles(*triangles);
   restore(result.wrong_angle_sums);
   std::sort(result.wrong_angle_sums.begin(), result.wrong_angle_sums.end());
@@ -321,12 +339,12 @@ void CanonicalSurface::restore(Result& result) const {
   restore(result.warnings);
 }
 
-void CanonicalSurface::restore(Unwrapped& unwrapped) const {
+void CanonicalSurface::restore(const Cones& given, Unwrapped& unwrapped) const {
   restore(unwrapped.result);
   restore(unwrapped.borders);
   if (unwrapped.packed_quickly) restore(*unwrapped.packed_quickly);
   if (!unwrapped.placement) return;
-  restore(unwrapped.placement->cones);
+  restore_sorted(given.vertices, unwrapped.placement->cones, unwrapped.placement->cone_angles);
   restore(unwrapped.placement->log_scale);
   restore(unwrapped.placement->warnings);
 }

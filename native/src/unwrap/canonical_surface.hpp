@@ -23,15 +23,14 @@ class CanonicalSurface {
   explicit CanonicalSurface(const Surface& given);
 
   const Surface& surface() const { return surface_; }
-  // Of the given surface, relative to this one.
-  double size() const { return size_; }
 
   // What is given for that surface, for this one.
   Cones of(const Cones& given) const;
   AutoUnwrapOptions of(const AutoUnwrapOptions& given) const;
 
-  // What came out for this one, for that one. Islands are numbered in the order of their first triangles.
-  void restore(Unwrapped& unwrapped) const;
+  // What came out for this one, for that one. Islands are numbered in the order of their first triangles, cones in that
+  // of their vertices, in a placement the given ones first.
+  void restore(const Cones& given, Unwrapped& unwrapped) const;
   Error restored(const Error& error) const;
 
  private:
@@ -47,10 +46,11 @@ class CanonicalSurface {
   void restore(CornerUv& corner_uv) const;
   void restore(SeamlessReport& report) const;
   void restore(Result& result) const;
+  void restore_sorted(const std::vector<Index>& first, std::vector<Index>& cones, std::vector<double>& angles) const;
   void restore_sorted_triangles(std::vector<Index>& triangles) const;
 
   Surface surface_;
-  double size_ = 1;
+  double size_ = 1;                   // of the given surface, relative to this one
   PerVertex<Index> own_vertex_;       // of the given surface's
   PerVertex<Index> source_vertex_;    // the given surface's
   PerTriangle<Index> source_corner_;  // the given surface's corner, 3 * triangle + corner, that each begins with
