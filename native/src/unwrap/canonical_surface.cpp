@@ -19,7 +19,7 @@ namespace {
 
 // Of the farthest distance. Turning a position loses about 2^-52, so that of 10,000 coordinates one in a hundred times
 // one is rounded to another quantum.
-constexpr double quantum = 0x1p-36;
+constexpr double quantum = 0x1p-32;
 // Heights of triangles, in quanta, from which on rounding costs less than float32 does.
 constexpr double least_height = 0x1p12;
 constexpr double same_place = 1e-9;  // of the farthest distance
