@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <numeric>
 #include <unordered_set>
 
@@ -20,8 +18,7 @@ class ShapeOrder {
  public:
   explicit ShapeOrder(const HalfedgeMesh& mesh);
 
-  Index first(const Eigen::RowVector3d& center) const;
-  Array<Index> from(Index first) const;
+  Array<Index> outermost() const;
 
  private:
   // A breadth-first walk from a halfedge over triangles, each of which is reached across the halfedge in the list.
@@ -45,15 +42,6 @@ ShapeOrder::ShapeOrder(const HalfedgeMesh& mesh) : mesh_(mesh), middle_(Eigen::R
   for (Index h = 0; h < mesh.halfedge_count(); ++h) middle_ += mesh.positions.row(mesh.origin(h));
   middle_ /= mesh.halfedge_count();
   for (Index v = 0; v < mesh.vertex_count(); ++v) farthest_ = std::max(farthest_, distance(v));
-}
-
-// Keeps those whose value is the largest, as far as rounding can tell.
-template <typename Of, typename Value>
-void keep_largest(Array<Of>& left, double within, Value value) {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Of& one : left) most = std::max(most, value(one));
-  left.erase(std::remove_if(left.begin(), left.end(), [&](const Of& one) { return value(one) < most - within; }),
-             left.end());
 }
 
 // What lies across the sides of the triangle that a walk reaches at some step: how far out the vertices opposite are,
@@ -97,50 +85,37 @@ void ShapeOrder::keep_alike(Array<Index>& halfedges) const {
   for (const Walker& walker : left) halfedges.push_back(walker.walk.reached.front());
 }
 
-Index ShapeOrder::first(const Eigen::RowVector3d& center) const {
+Array<Index> ShapeOrder::outermost() const {
   Array<Index> left(mesh_.halfedge_count());
   std::iota(left.begin(), left.end(), Index{0});
-  const auto tail = [&](Index h) { return mesh_.positions.row(mesh_.origin(h)); };
-  const auto head = [&](Index h) { return mesh_.positions.row(mesh_.target(h)); };
   const double within = same_place * farthest_;
   keep_largest(left, within, [&](Index h) { return distance(mesh_.origin(h)); });
-  keep_largest(left, within, [&](Index h) { return (head(h) - tail(h)).squaredNorm(); });
+  keep_largest(left, within, [&](Index h) {
+    return (mesh_.positions.row(mesh_.target(h)) - mesh_.positions.row(mesh_.origin(h))).squaredNorm();
+  });
   if (left.size() > 1) keep_alike(left);
-  // What is alike all over, or as far as the walks went.
-  double most = 0;
-  for (const Index h : left) most = std::max(most, (tail(h) - center).squaredNorm());
-  const auto from_center = [&](Index h) { return (tail(h) - center).squaredNorm(); };
-  keep_largest(left, same_place * most, from_center);
-  keep_largest(left, same_place * most, [&](Index h) { return from_center(next(h)); });
-  keep_largest(left, same_place * most, [&](Index h) { return from_center(prev(h)); });
-  const double apart = same_place * std::sqrt(farthest_);
-  for (int axis = 0; axis < 3; ++axis) keep_largest(left, apart, [&](Index h) { return -tail(h)[axis]; });
-  for (int axis = 0; axis < 3; ++axis) keep_largest(left, apart, [&](Index h) { return -head(h)[axis]; });
-  return left.front();
+  return left;
 }
 
-Array<Index> ShapeOrder::from(Index first) const {
+}  // namespace
+
+Array<Index> outermost_halfedges(const HalfedgeMesh& mesh) { return ShapeOrder(mesh).outermost(); }
+
+Array<Index> triangles_from(const HalfedgeMesh& mesh, Index first) {
   Array<Index> out;
-  PerTriangle<char> is_reached(mesh_.triangle_count(), 0);
+  PerTriangle<char> is_reached(mesh.triangle_count(), 0);
   out.push_back(first);
   is_reached[first / 3] = 1;
   for (std::size_t i = 0; i < out.size(); ++i) {
     Index h = out[i];
     for (int side = 0; side < 3; ++side, h = next(h)) {
-      const Index across = mesh_.twin[h];
+      const Index across = mesh.twin[h];
       if (across == none || is_reached[across / 3]) continue;
       is_reached[across / 3] = 1;
       out.push_back(across);
     }
   }
   return out;
-}
-
-}  // namespace
-
-Array<Index> order_by_shape(const HalfedgeMesh& mesh, const Eigen::RowVector3d& center) {
-  const ShapeOrder order(mesh);
-  return order.from(order.first(center));
 }
 
 }  // namespace lsgp

@@ -2,17 +2,29 @@
 // The order of a connected mesh's triangles by its shape, whatever its numbering.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "base/array.hpp"
 #include "mesh/topology.hpp"
 
 namespace lsgp {
 
-// For each triangle the halfedge that it begins with, in breadth-first order from the vertex farthest from the middle
-// and the longest edge there; each triangle begins with the edge that the search came across. Of what is as far and as
-// long as rounding can tell, that from which the search meets what is farther out first; of what is alike all over,
-// that which is the farthest from a center, then by coordinates. So whatever goes by this order breaks its ties by the
-// shape.
-// center: of what the mesh is a part of.
-Array<Index> order_by_shape(const HalfedgeMesh& mesh, const Eigen::RowVector3d& center);
+// The halfedges that leave the vertex farthest from the middle and are the longest there; of several as far and as long
+// as rounding can tell, those from which a breadth-first search meets what is farther out first. What is left is alike
+// all over.
+Array<Index> outermost_halfedges(const HalfedgeMesh& mesh);
+
+// For each triangle the halfedge across which a breadth-first search from one reaches it, in that order.
+Array<Index> triangles_from(const HalfedgeMesh& mesh, Index first);
+
+// Keeps those whose value is the largest, as far as rounding can tell.
+template <typename Of, typename Value>
+void keep_largest(Array<Of>& left, double within, Value value) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Of& one : left) most = std::max(most, value(one));
+  left.erase(std::remove_if(left.begin(), left.end(), [&](const Of& one) { return value(one) < most - within; }),
+             left.end());
+}
 
 }  // namespace lsgp

@@ -51,16 +51,46 @@ double least_height_of(const Surface& surface) {
   return least;
 }
 
-// The corners with which the triangles of a component begin, in the order of its shape.
-Array<Index> ordered_corners(const Component& component, const Point& center) {
-  Array<Index> out;
-  if (component.orientable) {
-    for (const Index h : order_by_shape(component.mesh, center)) out.push_back(component.source_corner(h));
-  } else {
-    for (const Index f : component.source_triangle) out.push_back(3 * f);
+// Where the order of a component may begin, and its order from there. One-sided ones, which have no mesh, are taken as
+// they are.
+class ComponentOrder {
+ public:
+  explicit ComponentOrder(const Component& component)
+      : component_(&component), firsts_(component.orientable ? outermost_halfedges(component.mesh) : Array<Index>()) {}
+
+  // Of the places to begin that are alike, those at which a measure of corners is the largest.
+  template <typename Measure>
+  void keep_largest(double within, Measure measure) {
+    lsgp::keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(h)); });
   }
-  return out;
-}
+  template <typename Measure>
+  void keep_largest_beside(double within, Measure measure) {
+    lsgp::keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(next(h))); });
+  }
+
+  Index first_corner() const {
+    return component_->orientable ? component_->source_corner(firsts_.front())
+                                  : 3 * component_->source_triangle.front();
+  }
+
+  // The corners with which triangles begin.
+  Array<Index> corners() const {
+    Array<Index> out;
+    if (component_->orientable) {
+      for (const Index h : triangles_from(component_->mesh, firsts_.front()))
+        out.push_back(component_->source_corner(h));
+    } else {
+      for (const Index f : component_->source_triangle) out.push_back(3 * f);
+    }
+    return out;
+  }
+
+  std::size_t size() const { return component_->source_triangle.size(); }
+
+ private:
+  const Component* component_;  // not null
+  Array<Index> firsts_;
+};
 
 // The x axis points to the first corner of some, the y axis from it to the first of those that are the farthest away;
 // lengths of the given surface relative to the distance of the first one. Nothing where all are on a line.
@@ -116,39 +146,65 @@ CanonicalSurface::CanonicalSurface(const Surface& given) {
   std::vector<Finding> unsaid;
   const Topology topology = build_topology(given, {}, unsaid);
   const Point middle = middle_of(given);
-  PerComponent<Array<Index>> corners;
-  const auto first_position = [&](const Array<Index>& its) -> Point {
-    return given.positions.row(given.triangles.data()[its.front()]);
-  };
+  const auto position = [&](Index corner) -> Point { return given.positions.row(given.triangles.data()[corner]); };
+  const auto distance = [&](Index corner) { return (position(corner) - middle).norm(); };
+  Array<ComponentOrder> orders;
+  for (const Component& component : topology.components) orders.emplace_back(component);
   double farthest = 0;
-  for (const Component& component : topology.components) {
-    corners.push_back(ordered_corners(component, middle));
-    farthest = std::max(farthest, (first_position(corners.back()) - middle).norm());
+  for (const ComponentOrder& order : orders) farthest = std::max(farthest, distance(order.first_corner()));
+  Pose pose;
+  if (!orders.empty()) {
+    // The largest of those that reach as far.
+    std::stable_sort(orders.begin(), orders.end(),
+                     [](const ComponentOrder& a, const ComponentOrder& b) { return a.size() > b.size(); });
+    ComponentOrder outermost = *std::find_if(orders.begin(), orders.end(), [&](const ComponentOrder& order) {
+      return distance(order.first_corner()) >= (1 - same_place) * farthest;
+    });
+    outermost.keep_largest(same_place * farthest, distance);
+    outermost.keep_largest_beside(same_place * farthest, distance);
+    pose = pose_of(given, middle, outermost.corners());
   }
-  // The larger ones first, those as large by where they are as seen from the one that reaches the farthest.
-  std::stable_sort(corners.begin(), corners.end(),
-                   [](const Array<Index>& a, const Array<Index>& b) { return a.size() > b.size(); });
-  const auto outermost = std::find_if(corners.begin(), corners.end(), [&](const Array<Index>& its) {
-    return (first_position(its) - middle).norm() >= (1 - same_place) * farthest;
-  });
-  const Pose pose = outermost == corners.end() ? Pose() : pose_of(given, middle, *outermost);
   size_ = pose.size;
-  const auto place = [&](const Array<Index>& its) {
+  // Places to begin that are alike are told apart by their directions, so that components that are moved copies begin
+  // at the same one.
+  for (ComponentOrder& order : orders) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto along = [&](Index corner) { return pose.of(position(corner))[axis]; };
+      order.keep_largest(same_place, along);
+      order.keep_largest_beside(same_place, along);
+    }
+  }
+  // The larger components first, those as large by where they begin.
+  const auto place = [&](const ComponentOrder& order) {
     constexpr double apart = 1e-6;
-    const Eigen::Array<double, 1, 3> at = (pose.of(first_position(its)).array() / apart).round();
-    return std::tuple(-static_cast<double>(its.size()), at[0], at[1], at[2]);
+    const Eigen::Array<double, 1, 3> at = (pose.of(position(order.first_corner())).array() / apart).round();
+    return std::tuple(-static_cast<double>(order.size()), at[0], at[1], at[2]);
   };
-  std::stable_sort(corners.begin(), corners.end(),
-                   [&](const Array<Index>& a, const Array<Index>& b) { return place(a) < place(b); });
-  Array<Index> order;
-  for (const Array<Index>& its : corners) order.insert(order.end(), its.begin(), its.end());
-  number(given, order);
+  std::stable_sort(orders.begin(), orders.end(),
+                   [&](const ComponentOrder& a, const ComponentOrder& b) { return place(a) < place(b); });
+  Array<Index> corners;
+  PerVertex<Index> anchor(given.positions.rows(), none);  // of its component
+  for (const ComponentOrder& order : orders) {
+    for (const Index corner : order.corners()) {
+      corners.push_back(corner);
+      for (Index at = corner, c = 0; c < 3; ++c, at = next(at)) {
+        anchor[given.triangles.data()[at]] = given.triangles.data()[order.first_corner()];
+      }
+    }
+  }
+  number(given, corners);
   carry(given, pose.frame);
   for (Eigen::Index v = 0; v < given.positions.rows(); ++v) {
     surface_.positions.row(v) = pose.of(given.positions.row(source_vertex_[v]));
   }
-  if (least_height_of(surface_) > least_height * quantum) {
-    surface_.positions = (surface_.positions / quantum).array().round() * quantum;
+  if (!(least_height_of(surface_) > least_height * quantum)) return;
+  // Seen from where its component begins, so that moved copies remain copies.
+  const auto rounded = [](const Point& point) -> Point { return (point / quantum).array().round() * quantum; };
+  const Positions exact = surface_.positions;
+  for (Eigen::Index v = 0; v < exact.rows(); ++v) {
+    const Index source = anchor[source_vertex_[v]];
+    const Point from = source == none ? Point(Point::Zero()) : Point(exact.row(own_vertex_[source]));
+    surface_.positions.row(v) = rounded(from) + rounded(exact.row(v) - from);
   }
 }
 
