@@ -53,13 +53,16 @@ def test_no_map_is_made_that_could_not_cost_less_if_all_went_well() -> None:
     assert not made & {"symmetric cones, other cuts", "usual cones", "further islands"}
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])
-def test_other_cuts_are_not_expected_to_stretch_less(seed: int) -> None:
-    body = meshes.voxels(np.random.default_rng(seed).uniform(size=(4, 4, 4)) > 0.35)
+def test_other_cuts_are_not_expected_to_stretch_less() -> None:
     stretch_and_cones = lsgp.Weights(islands=0, cuts=0, borders=0, square=0)
-    result = lsgp.auto_unwrap(surface(body), creases=False, weights=stretch_and_cones)
-    symmetric, other = (
-        next(choice for choice in result.choices if choice.name == name)
-        for name in ("symmetric cones and cuts", "symmetric cones, other cuts")
-    )
-    assert other.estimate >= symmetric.cost
+    found = 0
+    for seed in range(4):
+        body = meshes.voxels(np.random.default_rng(seed).uniform(size=(4, 4, 4)) > 0.35)
+        result = lsgp.auto_unwrap(surface(body), creases=False, weights=stretch_and_cones)
+        choices = {choice.name: choice for choice in result.choices}
+        # The cones of a body without a plane of symmetry are the usual ones.
+        if "symmetric cones, other cuts" not in choices:
+            continue
+        found += 1
+        assert choices["symmetric cones, other cuts"].estimate >= choices["symmetric cones and cuts"].cost
+    assert found

@@ -526,16 +526,18 @@ def test_the_best_layout_within_seconds_is_never_below_a_good_one() -> None:
 @pytest.mark.slow
 def test_best_layouts_turn_islands_more_finely_than_good_ones() -> None:
     """Good ones of up to eight islands have eight directions in a quarter turn, from the longest side of their hull."""
-    random = np.random.default_rng(1)
-    corners = np.exp(2j * np.pi * (np.arange(3) + random.uniform(0.1, 0.9, (6, 3))) / 3)
-    uv = np.stack([corners.real, corners.imag], axis=-1)
     island = np.arange(6, dtype=np.int32)
 
-    def off_directions(effort: str) -> int:
+    def off_directions(effort: str, seed: int) -> int:
+        random = np.random.default_rng(seed)
+        corners = np.exp(2j * np.pi * (np.arange(3) + random.uniform(0.1, 0.9, (6, 3))) / 3)
+        uv = np.stack([corners.real, corners.imag], axis=-1)
         z = lsgp.pack_islands(uv, island, 0.0, effort=effort) @ (1, 1j)
         sides = np.roll(z, -1, axis=1) - z
         longest = sides[island, np.abs(sides).argmax(axis=1)]
         eighths = np.angle(longest) / (np.pi / 16)
         return int((np.abs(eighths - eighths.round()) > 1e-3).sum())
 
-    assert off_directions("best") > off_directions("good")
+    # Those of the smallest square around an island are off, too.
+    seeds = range(4)
+    assert sum(off_directions("best", seed) for seed in seeds) > sum(off_directions("good", seed) for seed in seeds)

@@ -107,7 +107,8 @@ def test_cuts_match_as_before() -> None:
     split = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight")
     for of, found in ((both, result), (PARTS, split)):
         measured = lsgp.measure_distortion(of, found.corner_uv, found.cones)
-        assert measured.seams.sister_ratio_max - 1 < 1e-9 and len(measured.flipped) == 0
+        # A press rounds positions to 2^-32 of the surface's size, of which the shortest edges are a twentieth.
+        assert measured.seams.sister_ratio_max - 1 < 2e-8 and len(measured.flipped) == 0
         assert measured.distortion.l2_stretch == pytest.approx(found.distortion.l2_stretch, rel=1e-9)
     assert replace(split, corner_uv=on_shelves("bake").corner_uv) == on_shelves("bake")
 

@@ -187,7 +187,7 @@ def test_edges_at_small_angles_get_different_axes(transform: list[list[float]] |
     free = lsgp.auto_unwrap(surface(mesh), preset="paint", options=PAINT)
     length = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
     is_straight = distance_off_axes(mesh, result, edges) == 0
-    assert result.features.share == pytest.approx(length[is_straight].sum() / length.sum(), abs=1e-12)
+    assert result.features.share == pytest.approx(length[is_straight].sum() / length.sum(), abs=1e-9)
     assert result.features.share > least
     assert result.distortion.l2_stretch < MOST_L2 * free.distortion.l2_stretch
     assert undeclared_faults(replace(marked, borders=result.borders), result, PAINT) == []
@@ -205,6 +205,6 @@ def test_the_share_counts_edges_between_islands_once(mesh: Mesh) -> None:
     is_straight = distance_off_axes(mesh, result, edges) == 0
     share = length[is_straight].sum() / length.sum()
     assert 0.5 < share < 1
-    assert result.features.share == pytest.approx(share, abs=1e-12)
+    assert result.features.share == pytest.approx(share, abs=1e-9)
     released = sum(feature.share for feature in result.features.released)
-    assert released == pytest.approx(1 - share, abs=1e-12)
+    assert released == pytest.approx(1 - share, abs=1e-9)

@@ -13,7 +13,7 @@ import numpy as np
 import oracle
 import pytest
 from lsgp.surface import surface_arrays
-from map_checks import codes, only, surface
+from map_checks import codes, only, pairs, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from result_check import undeclared_faults
@@ -24,6 +24,7 @@ TILE = lsgp.preset_options("tile")
 PLAIN = replace(TILE, straighten=False)
 SHARP = np.radians(40)
 MOST_L2 = 1.1  # of the stretch without
+HAVE_A_DIRECTION = 0.75  # of the length of creases, along the lattice
 
 SLAB = np.zeros((5, 5, 2), bool)
 SLAB[:2], SLAB[:, :2] = True, True
@@ -146,18 +147,18 @@ def test_corners_of_caps_with_thousands_of_sides_are_chosen_among_some() -> None
     assert np.unique(cones).size == len(cones) <= 8
 
 
-@pytest.mark.parametrize("mesh", [closed.noise_sphere(1, 0.25, 1), closed.noise_sphere(2, 0.15, 1)])
-def test_creases_of_coarse_round_shapes_do_not_make_tiles_small(mesh: Mesh) -> None:
+@pytest.mark.parametrize("height, seed", [(0.25, 1), (0.25, 3), (0.3, 4)])
+def test_creases_of_coarse_round_shapes_do_not_make_tiles_small(height: float, seed: int) -> None:
     """They are as sharp as those of hard surfaces, but lead everywhere, so that others cannot be along it."""
-    given = surface(mesh)
+    given = surface(closed.noise_sphere(1, height, seed))
     result, plain = (lsgp.auto_unwrap(given, preset="tile", options=each) for each in (TILE, PLAIN))
     along = lsgp.parameterize(given, result.cones, result.cone_angles, TILE)
+    assert along.seamless.feature_share < HAVE_A_DIRECTION
     np.testing.assert_array_equal(result.corner_uv, plain.corner_uv)
-    assert 0.5 < along.seamless.feature_share < 0.9
     assert along.seamless.tile_size < result.seamless.tile_size / 2
     assert along.distortion.l2_stretch > result.distortion.l2_stretch
     told = only(result.warnings, "FEATURES_OFF_LATTICE")
-    np.testing.assert_array_equal(told.elements.indices, along.seamless.creases)
+    assert pairs(told.elements.indices.reshape(-1, 2)) == pairs(along.seamless.creases.reshape(-1, 2))
     assert f"only {100 * along.seamless.feature_share:.0f} %" in told.message
     marked = replace(given, features=lsgp.feature_edges(given, angle=SHARP))
     assert lsgp.auto_unwrap(marked, preset="tile").features.share > 0.25
@@ -243,7 +244,7 @@ def test_creases_off_the_lattice_are_named() -> None:
     assert named.kind == "edges"
     assert {tuple(sorted(edge)) for edge in named.indices.reshape(-1, 2).tolist()} == set(map(tuple, edges.tolist()))
     length = np.linalg.norm(np.diff(mesh.positions[mesh.triangles.ravel()[corners]], axis=1)[:, 0], axis=1)
-    assert result.seamless.feature_share == pytest.approx(length[~off].sum() / length.sum(), abs=1e-12)
+    assert result.seamless.feature_share == pytest.approx(length[~off].sum() / length.sum(), abs=1e-9)
     ends_of = np.sort(mesh.triangles.ravel()[corners], axis=1).tolist()
     is_aligned = zip(np.sort(result.seamless.creases, axis=1).tolist(), result.seamless.is_crease_aligned, strict=True)
     assert {tuple(edge): bool(aligned) for edge, aligned in is_aligned} == {
