@@ -9,10 +9,10 @@
 namespace {
 
 using Units = lsgp::SmallestCut::Units;
-using Edges = lsgp::Array<lsgp::SmallestCut::Edge>;
+using CapacityEdges = lsgp::Array<lsgp::SmallestCut::Edge>;
 
-Edges random_edges(Random& random, int nodes, int count) {
-  Edges out;
+CapacityEdges random_edges(Random& random, int nodes, int count) {
+  CapacityEdges out;
   for (int i = 0; i < count; ++i) {
     const int a = below(random, nodes), b = below(random, nodes);
     if (a != b) out.push_back({{a, b}, 1 + below(random, 20)});
@@ -21,8 +21,8 @@ Edges random_edges(Random& random, int nodes, int count) {
 }
 
 // A grid with edges as long as those of a mesh.
-Edges grid_edges(Random& random, int side) {
-  Edges out;
+CapacityEdges grid_edges(Random& random, int side) {
+  CapacityEdges out;
   for (int node = 0; node < side * side; ++node) {
     if (node % side + 1 < side) out.push_back({{node, node + 1}, 5000 + below(random, 10000)});
     if (node + side < side * side) out.push_back({{node, node + side}, 5000 + below(random, 10000)});
@@ -31,7 +31,7 @@ Edges grid_edges(Random& random, int side) {
 }
 
 // Grows both sets, the lists of which begin with one node each, and compares with flows.
-void require_smallest_cuts(Random& random, int nodes, const Edges& edges) {
+void require_smallest_cuts(Random& random, int nodes, const CapacityEdges& edges) {
   lsgp::SmallestCut network(nodes, edges);
   lsgp::Array<lsgp::Array<int>> sets{{0}, {nodes - 1}};
   lsgp::Array<char> is_in_set(nodes, 0);

@@ -99,7 +99,7 @@ Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island,
 
 // Of islands that may be scaled, whose unit is the root of their area: what turning or scaling all of them loses is
 // rounded away, and the gap that layouts add for rounding is wider.
-constexpr double quantum = 0x1p-32;
+constexpr double quantum_of_islands = 0x1p-32;
 
 // Lengths as multiples of a power of two, so that no square of one overflows or vanishes and no digit hangs on it, and
 // of a further factor.
@@ -114,10 +114,10 @@ struct Unit {
 // Of the texture coordinates, and of the area, the margin and blocks.
 struct Units {
   Unit given, packed;
-  double quantum = 0;  // of islands, 0: none
+  double of_outlines = 0;  // of which their coordinates are multiples, 0: of none
 };
 
-// The root of the area of all islands, 1 if it has none. It does not hang on the order of triangles.
+// The root of the area of all islands, 1 if it has hardly any. It does not hang on the order of triangles.
 double root_of_area(const CornerUv& corner_uv, const std::vector<Index>& island, const Unit& unit) {
   Array<double> areas;
   for (std::size_t t = 0; t < island.size(); ++t) {
@@ -130,7 +130,8 @@ double root_of_area(const CornerUv& corner_uv, const std::vector<Index>& island,
   }
   std::sort(areas.begin(), areas.end());
   const double root = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.0));
-  return root > std::numeric_limits<double>::min() ? root : 1;
+  constexpr double least = 1e-100;  // so that no square of a coordinate overflows
+  return root > least ? root : 1;
 }
 
 Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
@@ -160,7 +161,7 @@ Units choose_units(const CornerUv& corner_uv, const std::vector<Index>& island, 
   if (!has_place && !has_size && !may_stay) {
     if (options.snap > 0) return units;  // islands begin at blocks, as they are
     units.given.factor = root_of_area(corner_uv, island, units.given);
-    units.quantum = quantum;
+    units.of_outlines = quantum_of_islands;
     return units;
   }
   // What keeps its place or size has to fit to the area.
@@ -226,11 +227,11 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
-  const auto [unit, packed_unit, quantum] = choose_units(corner_uv, island, given);
+  const auto [unit, packed_unit, of_outlines] = choose_units(corner_uv, island, given);
   const PackingOptions options = in_unit(given, packed_unit);
   CornerUv scaled = corner_uv;
   for (double& coordinate : scaled.reshaped()) coordinate = unit.of(coordinate);
-  const Array<Body> bodies = bodies_of(scaled, island, options, quantum);
+  const Array<Body> bodies = bodies_of(scaled, island, options, of_outlines);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
@@ -293,7 +294,7 @@ double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island,
   if (!(side > 0) || !std::isfinite(side)) return usual;
   // Gaps g take g * around + islands * g^2.
   const double gap = (std::sqrt(around * around + 4 * islands * most_gaps * area) - around) / (2 * islands);
-  return std::clamp(std::ceil(gap / (2 * side) / quantum) * quantum, least, usual);
+  return std::clamp(std::ceil(gap / (2 * side) / quantum_of_islands) * quantum_of_islands, least, usual);
 }
 
 }  // namespace lsgp

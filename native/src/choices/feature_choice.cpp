@@ -121,11 +121,11 @@ Made FeatureMaps::without_creases(const Made& along, const Progress& progress) c
   const double least = worth_along_features(result) + (has_direction(share) ? worth_of_direction : 0);
   Made plain = attempt([&] { return maps_(along->cones, unstraightened(), progress); });
   if (!plain || worth_along_features(plain->result) <= least) return along;
-  const std::string message =
-      concat("No creases run along the lattice: only ", decimals(100 * share, 0),
-             " % of their length can, at an L2 stretch of ", significant(result.distortion.l2_stretch, 4),
-             " and with tiles that are ", significant(result.seamless->tile_size, 3),
-             " wide on the surface. Mark as features those that have to.");
+  const std::string message = concat("No creases run along the lattice: only ", decimals(100 * share, 0),
+                                     " % of their length can, at an L2 stretch of ",
+                                     significant(result.distortion.l2_stretch, 4), " and with tiles that are ",
+                                     significant(result.seamless->tile_size / plain->result.seamless->tile_size, 3),
+                                     " times as wide. Mark as features those that have to.");
   plain->result.warnings.push_back(
       {Code::features_off_lattice, message, {ElementKind::edges, result.seamless->creases}});
   return plain;

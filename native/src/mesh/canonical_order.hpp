@@ -18,7 +18,7 @@ Array<Index> outermost_halfedges(const HalfedgeMesh& mesh);
 // For each triangle the halfedge across which a breadth-first search from one reaches it, in that order.
 Array<Index> triangles_from(const HalfedgeMesh& mesh, Index first);
 
-// Keeps those whose value is the largest, as far as rounding can tell.
+// Keeps those whose value is the largest, as far as can be told.
 template <typename Of, typename Value>
 void keep_largest(Array<Of>& left, double within, Value value) {
   double most = -std::numeric_limits<double>::infinity();

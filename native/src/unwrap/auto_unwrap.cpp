@@ -20,6 +20,7 @@
 #include "lsgp/lsgp.hpp"
 #include "measures/map_comparison.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 #include "unwrap/canonical_surface.hpp"
 #include "unwrap/coarse_first.hpp"
 #include "unwrap/presets.hpp"
@@ -200,6 +201,12 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   return out;
 }
 
+CanonicalSurface canonical_surface(const Surface& surface) try {
+  return CanonicalSurface(surface);
+} catch (const Error& error) {
+  throw in_words(error);
+}
+
 Unwrapped unwrapped_as(const CanonicalSurface& canonical, const Cones& cones, const AutoUnwrapOptions& options,
                        const TimeLimit& limit) try {
   const Cones own = canonical.of(cones);
@@ -219,9 +226,12 @@ Unwrapped auto_unwrap(const Surface& surface, const Cones& cones, const AutoUnwr
   require_valid(surface);
   require_vertices(surface, cones);
   require_valid(options.weights.value_or(row_of(options.preset).weights), options);
+  require_vertices(surface, options.sharp, "sharp edges");
+  if (options.map) require_valid(options.map->of_map);
+  const bool is_pinned = !pins.corners.empty() || pins.positions.rows() > 0;
   try {
-    if (!pins.corners.empty()) return unwrapped({surface, cones, pins}, options, limit);
-    const CanonicalSurface canonical(surface);
+    if (is_pinned) return unwrapped({surface, cones, pins}, options, limit);
+    const CanonicalSurface canonical = canonical_surface(surface);
     return unwrapped_as(canonical, cones, options, limit);
   } catch (const Error& error) {
     if (!limit.has_caused(error)) throw;

@@ -17,12 +17,14 @@ namespace lsgp {
 
 namespace {
 
-// Of the farthest distance. Turning a position loses about 2^-52, so that of 10,000 coordinates one in a hundred times
-// one is rounded to another quantum.
+// Of the distance of the farthest corner from the middle. Turning a position loses about 2^-52, so that of 10,000
+// coordinates one in a hundred times one is rounded to another quantum.
 constexpr double quantum = 0x1p-32;
 // Heights of triangles, in quanta, from which on rounding costs less than float32 does.
 constexpr double least_height = 0x1p12;
-constexpr double same_place = 1e-9;  // of the farthest distance
+constexpr double same_place = 1e-9;  // of that distance
+// Of it, the shortest side from which on turning leaves float32's digits.
+constexpr double shortest_turned = 0x1p-28;
 
 using Point = Eigen::RowVector3d;
 
@@ -36,6 +38,30 @@ Point middle_of(const Surface& surface) {
     corners += 3;
   }
   return corners > 0 ? Point(sum / corners) : sum;
+}
+
+double farthest_from(const Surface& surface, const Point& middle) {
+  double farthest = 0;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (is_collapsed(surface.triangles, f)) continue;
+    for (int c = 0; c < 3; ++c) {
+      farthest = std::max(farthest, (surface.positions.row(surface.triangles(f, c)) - middle).norm());
+    }
+  }
+  return farthest;
+}
+
+// Of those that are not 0.
+double shortest_side_of(const Surface& surface) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    for (int c = 0; c < 3; ++c) {
+      const Point side =
+          surface.positions.row(surface.triangles(f, c)) - surface.positions.row(surface.triangles(f, (c + 1) % 3));
+      if (side.norm() > 0) shortest = std::min(shortest, side.norm());
+    }
+  }
+  return shortest;
 }
 
 double least_height_of(const Surface& surface) {
@@ -60,12 +86,12 @@ class ComponentOrder {
 
   // Of the places to begin that are alike, those at which a measure of corners is the largest.
   template <typename Measure>
-  void keep_largest(double within, Measure measure) {
-    lsgp::keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(h)); });
+  void prefer(double within, Measure measure) {
+    keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(h)); });
   }
   template <typename Measure>
-  void keep_largest_beside(double within, Measure measure) {
-    lsgp::keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(next(h))); });
+  void prefer_beside(double within, Measure measure) {
+    keep_largest(firsts_, within, [&](Index h) { return measure(component_->source_corner(next(h))); });
   }
 
   Index first_corner() const {
@@ -92,8 +118,8 @@ class ComponentOrder {
   Array<Index> firsts_;
 };
 
-// The x axis points to the first corner of some, the y axis from it to the first of those that are the farthest away;
-// lengths of the given surface relative to the distance of the first one. Nothing where all are on a line.
+// The x axis points to the first corner of some, the y axis from it to the first of those that are the farthest away.
+// Nothing where all are on a line.
 struct Pose {
   Point middle = Point::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
@@ -102,14 +128,14 @@ struct Pose {
   Point of(const Point& given) const { return (given - middle) / size * frame; }
 };
 
-Pose pose_of(const Surface& surface, const Point& middle, const Array<Index>& corners) {
+Pose pose_of(const Surface& surface, const Point& middle, double size, const Array<Index>& corners) {
   const auto at = [&](Index corner) -> Point {
     return surface.positions.row(surface.triangles.data()[corner]) - middle;
   };
   Pose out;
-  const double size = at(corners.front()).norm();
-  if (!(size > 0)) return out;
-  const Eigen::Vector3d axis = at(corners.front()).transpose() / size;
+  const double first = at(corners.front()).norm();
+  if (!(first > same_place * size)) return out;
+  const Eigen::Vector3d axis = at(corners.front()).transpose() / first;
   const auto aside = [&](Index corner) -> Eigen::Vector3d {
     const Eigen::Vector3d from_middle = at(corner).transpose() / size;
     return from_middle - from_middle.dot(axis) * axis;
@@ -150,19 +176,23 @@ CanonicalSurface::CanonicalSurface(const Surface& given) {
   const auto distance = [&](Index corner) { return (position(corner) - middle).norm(); };
   Array<ComponentOrder> orders;
   for (const Component& component : topology.components) orders.emplace_back(component);
-  double farthest = 0;
-  for (const ComponentOrder& order : orders) farthest = std::max(farthest, distance(order.first_corner()));
+  const double size = farthest_from(given, middle);
   Pose pose;
-  if (!orders.empty()) {
+  if (!orders.empty() && shortest_side_of(given) >= shortest_turned * size) {
+    Array<ComponentOrder> from_middle = orders;
+    double farthest = 0;
+    for (ComponentOrder& order : from_middle) {
+      order.prefer(same_place * size, distance);
+      order.prefer_beside(same_place * size, distance);
+      farthest = std::max(farthest, distance(order.first_corner()));
+    }
     // The largest of those that reach as far.
-    std::stable_sort(orders.begin(), orders.end(),
+    std::stable_sort(from_middle.begin(), from_middle.end(),
                      [](const ComponentOrder& a, const ComponentOrder& b) { return a.size() > b.size(); });
-    ComponentOrder outermost = *std::find_if(orders.begin(), orders.end(), [&](const ComponentOrder& order) {
-      return distance(order.first_corner()) >= (1 - same_place) * farthest;
+    const auto outermost = std::find_if(from_middle.begin(), from_middle.end(), [&](const ComponentOrder& order) {
+      return distance(order.first_corner()) >= farthest - same_place * size;
     });
-    outermost.keep_largest(same_place * farthest, distance);
-    outermost.keep_largest_beside(same_place * farthest, distance);
-    pose = pose_of(given, middle, outermost.corners());
+    pose = pose_of(given, middle, size, outermost->corners());
   }
   size_ = pose.size;
   // Places to begin that are alike are told apart by their directions, so that components that are moved copies begin
@@ -170,13 +200,14 @@ CanonicalSurface::CanonicalSurface(const Surface& given) {
   for (ComponentOrder& order : orders) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto along = [&](Index corner) { return pose.of(position(corner))[axis]; };
-      order.keep_largest(same_place, along);
-      order.keep_largest_beside(same_place, along);
+      order.prefer(same_place, along);
+      order.prefer_beside(same_place, along);
     }
   }
   // The larger components first, those as large by where they begin.
   const auto place = [&](const ComponentOrder& order) {
-    constexpr double apart = 1e-6;
+    constexpr double apart =
+        1e-6;  // far above rounding; of components closer to each other the order is left to chance
     const Eigen::Array<double, 1, 3> at = (pose.of(position(order.first_corner())).array() / apart).round();
     return std::tuple(-static_cast<double>(order.size()), at[0], at[1], at[2]);
   };
@@ -300,8 +331,11 @@ AutoUnwrapOptions CanonicalSurface::of(const AutoUnwrapOptions& given) const {
   out.sharp = of(given.sharp);
   if (!out.map) return out;
   Options& of_map = out.map->of_map;
-  for (auto& [vertex, turning] : of_map.loop_turning) vertex = own_vertex_[vertex];
-  if (of_map.seamless && of_map.seamless->tile_size) *of_map.seamless->tile_size /= size_;
+  for (auto& [vertex, turning] : of_map.loop_turning) {
+    if (vertex >= 0 && vertex < ssize(own_vertex_)) vertex = own_vertex_[vertex];  // others are refused later
+  }
+  const bool has_size = of_map.seamless && of_map.seamless->tile_size;
+  if (has_size && *of_map.seamless->tile_size > 0) *of_map.seamless->tile_size /= size_;  // others are refused later
   return out;
 }
 
@@ -382,7 +416,14 @@ void CanonicalSurface::restore(Result& result) const {
   }
   restore(result.cut_edges);
   restore(result.required_cuts);
-  for (std::vector<Index>& path : result.cut_paths) restore(path);
+  for (std::vector<Index>& path : result.cut_paths) {
+    restore(path);
+    if (path.size() < 2 || path.front() != path.back()) continue;
+    // Loops begin at their lowest vertex.
+    path.pop_back();
+    std::rotate(path.begin(), std::min_element(path.begin(), path.end()), path.end());
+    path.push_back(path.front());
+  }
   restore_sorted({}, result.cones, result.cone_angles);
   for (std::vector<Index>* triangles : {&result.flipped, &result.overlapping}) restore_sorted_triangles(*triangles);
   restore(result.wrong_angle_sums);

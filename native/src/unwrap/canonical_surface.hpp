@@ -13,13 +13,14 @@
 
 namespace lsgp {
 
-// Triangles and vertices are numbered component by component, as order_by_shape orders them. The middle of all corners
-// is at the origin, and the first vertex of the component whose first one is the farthest from it at (1, 0, 0).
-// Positions are rounded to quanta far above what turning them loses and far below what triangles need; not where some
-// are too thin for that.
+// Triangles and vertices are numbered component by component, in breadth-first order from an outermost halfedge. The
+// middle of all corners is at the origin, the farthest one 1 away from it, and the first vertex of the component whose
+// first one is the farthest on the x axis. Positions are rounded to quanta far above what turning them loses and far
+// below what triangles need; not where some are too thin for that. Nothing is moved where sides are too short to be
+// turned, and one-sided components keep their numbering.
 class CanonicalSurface {
  public:
-  // Throws EDGE_NOT_IN_MESH and SEAM_NOT_AN_EDGE.
+  // Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE and OUT_OF_MEMORY.
   explicit CanonicalSurface(const Surface& given);
 
   const Surface& surface() const { return surface_; }

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 
 import lsgp
 import meshes
@@ -151,6 +152,76 @@ def press(mesh: meshes.Mesh, preset: lsgp.Preset) -> tuple[int, float, float]:
     return len(np.unique(result.island[result.solved])), cost, area
 
 
+def edges_with(pairs_of: np.ndarray, new: np.ndarray) -> set[tuple[int, ...]]:
+    return {tuple(sorted(edge)) for edge in new[pairs_of].tolist()}
+
+
+@pytest.mark.parametrize("what", ["plain", "costs", "importance", "scale", "directions", "seams", "features", "cones"])
+@pytest.mark.parametrize("preset", ["paint", "tile"])
+def test_what_comes_out_of_a_press_is_in_the_numbering_that_was_given(preset: lsgp.Preset, what: str) -> None:
+    mesh = meshes.merge([meshes.flower(2), meshes.hill(6)])
+    edges, n = meshes.edges_of(mesh.triangles), len(mesh.positions)
+    height = mesh.positions[:, 1] - mesh.positions[:, 1].min()
+    marked: dict[str, np.ndarray] = {}
+    if what == "costs":
+        marked = {"edges": edges, "cut_costs": np.exp(height[edges[:, 0]])}
+    elif what in ("importance", "scale"):
+        marked = {what: 1 + 0.02 * height}
+    elif what == "directions":
+        marked = {what: np.tile([0.0, 0.2, 1.0], (len(mesh.triangles), 1))}
+    elif what in ("seams", "features"):
+        marked = {what: edges[:12]}
+    cones = [int(mesh.positions[:, axis].argmax()) for axis in range(3)] if what == "cones" else []
+    one = lsgp.auto_unwrap(lsgp.Surface(mesh.positions, mesh.triangles, **marked), cones, preset=preset)
+    twin, new, old_corner = meshes.renumber(mesh, 5)
+    old = np.argsort(new)
+    renumbered = {
+        name: new[array] if array.dtype != float else array[old] if len(array) == n else array
+        for name, array in marked.items()
+    }
+    if what == "directions":
+        renumbered = {what: marked[what][old_corner[::3] // 3]}
+    two = lsgp.auto_unwrap(lsgp.Surface(twin.positions, twin.triangles, **renumbered), new[cones], preset=preset)
+    assert dict(zip(new[one.cones].tolist(), one.cone_angles.tolist(), strict=True)) == pytest.approx(
+        dict(zip(two.cones.tolist(), two.cone_angles.tolist(), strict=True))
+    )
+    assert edges_with(one.cut_edges, new) == edges_with(two.cut_edges, np.arange(n))
+    assert edges_with(one.borders, new) == edges_with(two.borders, np.arange(n))
+    assert one.log_scale[old] == pytest.approx(two.log_scale, abs=1e-6)
+    lengths = [np.linalg.norm(np.diff(r.corner_uv, axis=1, append=r.corner_uv[:, :1]), axis=2) for r in (one, two)]
+    assert lengths[0].ravel()[old_corner] == pytest.approx(lengths[1].ravel(), rel=1e-5)
+    of_old = one.island[old_corner[::3] // 3]
+    assert len(set(zip(of_old.tolist(), two.island.tolist(), strict=True))) == one.island.max() + 1
+    assert [two.island.tolist().index(i) for i in range(two.island.max() + 1)] == sorted(
+        two.island.tolist().index(i) for i in range(two.island.max() + 1)
+    )
+    if what == "directions":
+        assert one.direction_errors[old_corner[::3] // 3] == pytest.approx(two.direction_errors, abs=1e-6, nan_ok=True)
+    assert sorted((f.code, len(f.elements.indices)) for f in one.warnings) == sorted(
+        (f.code, len(f.elements.indices)) for f in two.warnings
+    )
+
+
+@pytest.mark.parametrize("vertex", [-7, 64, 2**30])
+def test_what_names_no_vertex_is_refused_in_the_numbers_that_were_given(vertex: int) -> None:
+    given = surface(meshes.grid(7, 7))
+    with pytest.raises(lsgp.InputError, match=rf"\({vertex}\)"):
+        lsgp.auto_unwrap(given, sharp=[[3, vertex]])
+    with pytest.raises(lsgp.InputError, match=rf"\({vertex}\)"):
+        lsgp.auto_unwrap(given, options=lsgp.Options(loop_turning={vertex: 1.0}))
+
+
+def test_sizes_are_told_in_the_unit_that_was_given() -> None:
+    for scale in (1.0, 1000.0):
+        given = surface(meshes.transform(meshes.cube(3), 1, scale))
+        size = lsgp.Seamless(tile_size=0.5 * scale)
+        result = lsgp.auto_unwrap(given, preset="tile", options=replace(lsgp.preset_options("tile"), seamless=size))
+        assert result.seamless.tile_size == pytest.approx(0.5 * scale, rel=0.5)
+        wrong = replace(lsgp.preset_options("tile"), seamless=lsgp.Seamless(tile_size=-1.0))
+        with pytest.raises(lsgp.InputError, match=r"size is -1\."):
+            lsgp.auto_unwrap(given, preset="tile", options=wrong)
+
+
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_a_press_makes_the_same_map_of_the_same_surface(preset: lsgp.Preset) -> None:
     families = [
@@ -166,6 +237,7 @@ def test_a_press_makes_the_same_map_of_the_same_surface(preset: lsgp.Preset) -> 
         meshes.perforated_slab(2),
         meshes.double_torus(),
         meshes.merge([meshes.flower(2), meshes.torus(), meshes.cube(3), meshes.bumpy_sphere(2)]),
+        meshes.merge([meshes.cylinder(), meshes.cylinder(), meshes.cube(3), meshes.torus()]),
     ]
     other = []
     for number, mesh in enumerate(families):
