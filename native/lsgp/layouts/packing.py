@@ -281,7 +281,8 @@ def laid_out(
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
-    is_usual = packing.effort == "quick" and (packing.margin, packing.udim, packing.stack, packing.inside) == (None,) * 4
+    others = (packing.margin, packing.udim, packing.stack, packing.inside)
+    is_usual = packing.effort == "quick" and others == (None, None, None, None)
     margin = packing.margin
     if margin is None:
         margin = _lsgp.usual_margin(result.corner_uv, result.island, packing.udim or 1)
