@@ -129,6 +129,9 @@ def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result) -> list[str]:
         # Needles and directions across the surface leave few digits.
         sides = (first**2).sum(axis=1) + (last**2).sum(axis=1)
         sure = (area > 1e-4 * sides) & (np.linalg.norm(inside, axis=1) > 1e-4) & (np.abs(image) > 0)
+        # So do images that are tiny beside where they lie.
+        shortest = np.minimum(np.abs(z[:, 1] - z[:, 0]), np.abs(z[:, 2] - z[:, 0]))
+        sure &= shortest > 1e-8 * np.abs(z).max(axis=1)
     wrong = sure & ~np.isin(np.arange(len(z)), named_by(result, "DUPLICATE_FACE"))
     turn = TURN / (1 if result.seamless is None else result.seamless.rotation_order)
     angle = np.angle(image[wrong] / 1j)

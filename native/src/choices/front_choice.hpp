@@ -8,8 +8,8 @@
 
 namespace lsgp {
 
-// At which edges a surface may end around what its front sees; none where nothing may be cut but seams, and beside
-// marked seams, given cones, and in seamless layouts, whose cuts do not show.
+// At which edges a surface may end around what its front sees; none where nothing may be cut but seams, with marked
+// seams, given cones, directions, borders of a shape of their own, and in seamless layouts, whose cuts do not show.
 // progress: without time of its own.
 VertexPairs outline_for(const Surface& surface, const GivenCones& given, const MapOptions& options,
                         const Progress& progress);

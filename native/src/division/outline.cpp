@@ -130,7 +130,8 @@ class Outline {
     return out;
   }
 
-  // Pieces too small for an island of their own go with what is around them.
+  // Pieces too small for an island of their own change sides, and so go with what is around them unless that is such a
+  // piece, too.
   void join_small_pieces() {
     const auto count = static_cast<Index>(surface_.triangles.rows());
     UnionFind pieces = solid_, components = solid_;
