@@ -17,6 +17,7 @@ import lsgp
 import numpy as np
 from lsgp.cli import main
 from lsgp.layouts.texels import tiny_findings
+from lsgp.presets.auto_unwrap import choose_map
 from numpy.typing import NDArray
 
 from .steps import Step
@@ -197,11 +198,8 @@ def _call(
         manual = options.prescription in (None, "manual")
         return lsgp.parameterize(surface, cones, angles if manual else None, options)
     count = int(step["cones"].removeprefix("auto:")) if ":" in step["cones"] else None
-    lattice = None if options.seamless is None else options.seamless.lattice
-    # Cones are placed for the borders of the map; straight ones want other angles than placement gives.
-    placed = lsgp.place_cones(surface, count=count, lattice=lattice, seams=options.seams, border=options.border)
-    as_placed = options.prescription is None and options.border != "straight"
-    return lsgp.parameterize(surface, placed.cones, placed.cone_angles if as_placed else None, options)
+    how = {"options": options, "count": count, "symmetric": False, "charts": False, "creases": False}
+    return choose_map(surface, **how).result
 
 
 def corner_uv_of(path: Path) -> NDArray[np.float64]:

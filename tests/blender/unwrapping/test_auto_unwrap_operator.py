@@ -171,7 +171,7 @@ def test_bake_cuts_a_strip_so_that_it_fills_the_square():
     assert uv_map.sister_difference() <= UV_ROUNDING
     assert covered_twice([uv_map]) == 0
     unwrap(preset="PAINT")
-    assert 1 < UvMap(strip).islands() < uv_map.islands()
+    assert 1 < UvMap(strip).islands() <= uv_map.islands()
     unwrap(preset="PAINT", compact=False)
     assert UvMap(strip).islands() == 1
 

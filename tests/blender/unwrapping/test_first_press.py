@@ -57,10 +57,10 @@ def densities_of(obj, uv_map):
 
 
 def creases_of(obj):
-    """The edges at which hard parts may end, with cuts where they usually run."""
+    """The edges at which hard parts end, with cuts where they usually run."""
     region = addon.mesh.region_read.read_region(obj, Faces.ALL, Groups("uv_cones"), subdivided=True)
     region = cuts.with_cut_costs(region, cuts.CutChoice())
-    edges = addon.core.native.lsgp.crease_borders(region.surface, sharp=region.sharp)
+    edges = addon.core.native.lsgp.auto_unwrap(region.surface, preset="tile", sharp=region.sharp).borders
     found = {tuple(sorted(edge)) for edge in edges.tolist()}
     return {tuple(sorted(edge)) for edge in region.mesh_edges.tolist() if tuple(sorted(region.stitched[edge])) in found}
 
