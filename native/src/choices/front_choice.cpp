@@ -12,20 +12,6 @@
 
 namespace lsgp {
 
-namespace {
-
-// Components that have such edges.
-PerComponent<char> having(const SurfaceParts& parts, const VertexPairs& edges) {
-  PerComponent<char> out(parts.count(), 0);
-  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
-    const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
-    if (f != none && parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] = 1;
-  }
-  return out;
-}
-
-}  // namespace
-
 VertexPairs outline_for(const Surface& surface, const GivenCones& given, const MapOptions& options,
                         const Progress& progress) {
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
@@ -43,7 +29,7 @@ Made best_of_front(const Made& usual, const VertexPairs& outline, double target,
   const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& share) {
     const VertexPairs& all = bordered->surface().borders;
     const VertexPairs further = filtered(all, [&](Eigen::Index e) { return !earlier.has(all(e, 0), all(e, 1)); });
-    const PerComponent<char> ends = having(parts, further);
+    const PerComponent<char> ends = have_edges(parts, further);
     const MapThrough map = maps_of(bordered, no_pins);
     const CompletedCones others = joined(usual->cones, {}, parts.surface(), vertices_on(parts, ends));
     Made made = map(others, options, share);

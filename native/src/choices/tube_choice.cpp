@@ -37,7 +37,7 @@ VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, co
 void keep_opened(const Surface& surface, Tubes& tubes) {
   if (tubes.triangles.empty()) return;
   const SurfaceParts parts{std::cref(surface)};
-  const PerComponent<char> has_seams = have_seams(parts);
+  const PerComponent<char> has_seams = have_edges(parts, parts.surface().seams);
   const auto is_other = [&](Index f) { return parts.of_triangle()[f] == none || !has_seams[parts.of_triangle()[f]]; };
   std::vector<Index>& own = tubes.triangles;
   own.erase(std::remove_if(own.begin(), own.end(), is_other), own.end());

@@ -10,6 +10,7 @@
 #include "base/union_find.hpp"
 #include "mesh/edge_table.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/topology.hpp"
 #include "solvers/smallest_cut.hpp"
 
 namespace lsgp {
@@ -51,7 +52,7 @@ class Outline {
     for (const Link& link : links_) {
       if (is_dear_[link.triangles[0]] == is_dear_[link.triangles[1]]) continue;
       const Index h = edges_.halfedge(link.edge, 0);
-      found.emplace_back(corner(h), corner(h % 3 == 2 ? h - 2 : h + 1));
+      found.emplace_back(corner(h), corner(next(h)));
     }
     VertexPairs out(ssize(found), 2);
     for (std::ptrdiff_t e = 0; e < ssize(found); ++e) out.row(e) << found[e].first, found[e].second;
@@ -64,7 +65,7 @@ class Outline {
   Index corner(Index halfedge) const { return surface_.triangles.data()[halfedge]; }
   double length(Index edge) const {
     const Index h = edges_.halfedge(edge, 0);
-    return (surface_.positions.row(corner(h)) - surface_.positions.row(corner(h % 3 == 2 ? h - 2 : h + 1))).norm();
+    return (surface_.positions.row(corner(h)) - surface_.positions.row(corner(next(h)))).norm();
   }
 
   void find_links() {

@@ -75,7 +75,7 @@ double bent_tubes(const MadeMap& made) {
   PerVertex<char> is_cone(parts.surface().positions.rows(), 0);
   for (const Index v : result.cones) is_cone[v] = 1;
   PerComponent<char> is_bent(parts.count(), 0);
-  if (made.options.of_map.border != BorderMode::strips) is_bent = have_seams(parts);
+  if (made.options.of_map.border != BorderMode::strips) is_bent = have_edges(parts, parts.surface().seams);
   for (Index f = 0; f < count; ++f) {
     const auto corners = parts.surface().triangles.row(f);
     const bool has_cone = is_cone[corners[0]] || is_cone[corners[1]] || is_cone[corners[2]];

@@ -96,11 +96,10 @@ PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs
   return out;
 }
 
-PerComponent<char> have_seams(const SurfaceParts& parts) {
-  const VertexPairs& seams = parts.surface().seams;
+PerComponent<char> have_edges(const SurfaceParts& parts, const VertexPairs& edges) {
   PerComponent<char> out(parts.count(), 0);
-  for (Index e = 0; e < seams.rows(); ++e) {
-    const Index f = parts.triangle_at(seams(e, 0), seams(e, 1));
+  for (Index e = 0; e < edges.rows(); ++e) {
+    const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
     if (f != none && parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] = 1;
   }
   return out;

@@ -57,8 +57,8 @@ PerComponent<double> lengths_on(const SurfaceParts& parts, const VertexPairs& ed
 // are above 1 as well.
 PerComponent<double> extra_costs_on(const SurfaceParts& parts, const VertexPairs& cuts);
 
-// Whether each has marked seams.
-PerComponent<char> have_seams(const SurfaceParts& parts);
+// Whether each has some of these edges.
+PerComponent<char> have_edges(const SurfaceParts& parts, const VertexPairs& edges);
 
 // How many of the vertices, triangles, islands and defects each component has.
 PerComponent<Index> counts_on(const SurfaceParts& parts, const std::vector<Index>& vertices);

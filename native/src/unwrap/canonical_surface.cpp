@@ -22,7 +22,7 @@ namespace {
 constexpr double quantum = 0x1p-32;
 // Heights of triangles, in quanta, from which on rounding costs less than float32 does.
 constexpr double least_height = 0x1p12;
-constexpr double same_place = 1e-9;  // of that distance
+constexpr double same_place = 1e-9;  // of that distance; above quanta
 // Of it, the shortest side from which on turning leaves float32's digits.
 constexpr double shortest_turned = 0x1p-28;
 
@@ -206,8 +206,8 @@ CanonicalSurface::CanonicalSurface(const Surface& given) {
   }
   // The larger components first, those as large by where they begin.
   const auto place = [&](const ComponentOrder& order) {
-    constexpr double apart =
-        1e-6;  // far above rounding; of components closer to each other the order is left to chance
+    // Far above rounding; of components closer to each other the order is left to chance.
+    constexpr double apart = 1e-6;
     const Eigen::Array<double, 1, 3> at = (pose.of(position(order.first_corner())).array() / apart).round();
     return std::tuple(-static_cast<double>(order.size()), at[0], at[1], at[2]);
   };
@@ -283,20 +283,16 @@ void CanonicalSurface::carry(const Surface& given, const Eigen::Matrix3d& frame)
   }
   surface_.may_collapse = given.may_collapse;
   if (given.edges) {
-    VertexPairs own = *given.edges;
-    for (Index& vertex : own.reshaped()) vertex = own_vertex_[vertex];
+    const VertexPairs own = renumbered(*given.edges);
     const Array<Index> rows = rows_in_order(own);
     surface_.edges = own(rows, Eigen::all);
-    surface_.cut_costs.resize(given.cut_costs.size());
-    for (Eigen::Index e = 0; e < given.cut_costs.size(); ++e) surface_.cut_costs[e] = given.cut_costs[rows[e]];
+    if (given.cut_costs.size() > 0) surface_.cut_costs = given.cut_costs(rows);
   }
   surface_.seams = of(given.seams);
   surface_.borders = of(given.borders);
   surface_.features = of(given.features);
   const auto permuted = [&](const Eigen::VectorXd& at_vertices) {
-    Eigen::VectorXd out(at_vertices.size());
-    for (Eigen::Index v = 0; v < out.size(); ++v) out[v] = at_vertices[source_vertex_[v]];
-    return out;
+    return at_vertices.size() > 0 ? Eigen::VectorXd(at_vertices(source_vertex_)) : at_vertices;
   };
   surface_.importance = permuted(given.importance);
   surface_.scale = permuted(given.scale);
@@ -306,9 +302,13 @@ void CanonicalSurface::carry(const Surface& given, const Eigen::Matrix3d& frame)
   }
 }
 
+VertexPairs CanonicalSurface::renumbered(VertexPairs pairs) const {
+  for (Index& vertex : pairs.reshaped()) vertex = own_vertex_[vertex];
+  return pairs;
+}
+
 VertexPairs CanonicalSurface::of(const VertexPairs& given) const {
-  VertexPairs own = given;
-  for (Index& vertex : own.reshaped()) vertex = own_vertex_[vertex];
+  const VertexPairs own = renumbered(given);
   return own(rows_in_order(own), Eigen::all);
 }
 

@@ -35,7 +35,8 @@ class CanonicalSurface {
   Error restored(const Error& error) const;
 
  private:
-  VertexPairs of(const VertexPairs& given) const;
+  VertexPairs renumbered(VertexPairs pairs) const;
+  VertexPairs of(const VertexPairs& given) const;  // sorted
   void number(const Surface& given, const Array<Index>& corners);
   void carry(const Surface& given, const Eigen::Matrix3d& frame);
 
