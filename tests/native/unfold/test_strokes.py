@@ -50,7 +50,7 @@ def unwrapped(surface: lsgp.Surface, follow: bool, lattice: str | None) -> lsgp.
 
 
 def bumpy_torus() -> meshes.Mesh:
-    """Without the symmetry of a torus, whose cones lie at any of many places alike: how much strokes gain there differs."""
+    """Without symmetry: on a torus cones lie at any of several places alike, and what strokes gain there differs."""
     mesh = meshes.torus(24, 12)
     x, y, z = mesh.positions.T
     bump = np.sin(1.1 * x + 0.7) * np.cos(0.9 * y - 0.3) + 0.6 * np.sin(1.5 * z + 0.5 * x)
