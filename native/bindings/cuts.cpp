@@ -3,6 +3,7 @@
 
 #include "calls.hpp"
 #include "lsgp/lsgp.hpp"
+#include "made_objects.hpp"
 #include "new_arrays.hpp"
 #include "options.hpp"
 #include "surfaces.hpp"

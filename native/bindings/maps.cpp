@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calls.hpp"
 #include "lsgp/lsgp.hpp"
+#include "made_objects.hpp"
 #include "new_arrays.hpp"
 #include "options.hpp"
 #include "results.hpp"

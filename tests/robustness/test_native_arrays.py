@@ -230,3 +230,19 @@ def test_an_interrupt_while_an_error_is_made_is_not_lost(monkeypatch: pytest.Mon
         _lsgp.distinct_corners(np.full(11, -1), np.zeros((11, 2)))
     with pytest.raises(KeyboardInterrupt):
         _lsgp.pack_islands(np.zeros((1, 3, 2)), np.array([7], np.int32), PACKING, None)
+
+
+def test_objects_that_were_not_made_are_refused() -> None:
+    """`__new__` gives one, where `__init__` was not called or there is none."""
+    refused = 0
+    for name, value in vars(_lsgp).items():
+        for member in vars(value) if inspect.isclass(value) else ():
+            if member.startswith("_"):
+                continue
+            with pytest.raises(TypeError, match="without __init__"):
+                taken = getattr(value.__new__(value), member)
+                taken(*FUNCTIONS[f"{name}.{member}"][1])
+            refused += 1
+    assert refused > 10
+    with pytest.raises(TypeError, match="without __init__"):
+        _lsgp.Solver(FUNCTIONS["Solver"][1][0], _lsgp.Solver.__new__(_lsgp.Solver))
