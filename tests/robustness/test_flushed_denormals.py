@@ -108,6 +108,7 @@ def test_a_surface_of_denormals_is_refused(size: float) -> None:
         assert ended(mesh, lsgp.Options()) in ("SCALE_RANGE", "DEGENERATE_MESH")
 
 
+@pytest.mark.exact_input  # how inputs are moved hangs on all bits, and would itself differ where denormals are flushed
 @pytest.mark.parametrize("size", [5e-324, 1e-310, 1e-290])
 def test_denormals_beside_ordinary_coordinates(size: float) -> None:
     mesh = meshes.grid(6, 5, lambda x, y: np.sin(x + y) * size)

@@ -15,6 +15,9 @@ from outcome_check import error_faults, placement_faults, result_faults
 SMALL = {one.name: one for one in zoo.members("small")}
 ORDINARY = [name for name, one in SMALL.items() if one.ordinary]
 BROKEN = [name for name, one in SMALL.items() if not one.ordinary]
+# A unit in the last place is as large as what is measured: a mesh so moved is another one than that compared with.
+LOST = ("lost-digits", "very-far-parts")
+BROKEN_ONES = [pytest.param(name, marks=[pytest.mark.exact_input] * name.startswith(LOST)) for name in BROKEN]
 # Of the large ones some that are the most of something: holes, parts, length.
 LARGEST = [
     "holed-plate-across=20-along=15-bend=0.2",
@@ -52,7 +55,7 @@ def test_a_large_mesh_has_a_map(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", BROKEN)
+@pytest.mark.parametrize("name", BROKEN_ONES)
 def test_a_broken_mesh_has_an_honest_end(name: str) -> None:
     mesh = SMALL[name].mesh()
     surface = lsgp.Surface(mesh.positions, mesh.triangles)
