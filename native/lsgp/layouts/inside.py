@@ -16,6 +16,8 @@ from ..lattice import island_boxes
 from ..results import Result
 from ..surface import Surface, surface_arrays
 
+LEAST_SHARE = 0.01  # of the others' texel density: with far less, coordinates have no digits left for the islands
+
 
 def find_hidden(surface: Surface, island: IndexArray, progress: Progress | None = None) -> NDArray[np.bool_]:
     """(m,) bool, triangles of islands that nothing outside can see: no ray from them leaves the surface.

@@ -19,7 +19,7 @@ from ..errors import Elements, Finding, InputError
 from ..results import Result
 from ..surface import Surface
 from .arranging import require_up, upright_turns
-from .inside import with_less_inside
+from .inside import LEAST_SHARE, with_less_inside
 from .stacking import find_stacks
 from .texels import TexelLayout, at_texel_density, outside_findings, tile_count
 from .upright import stand_upright
@@ -63,7 +63,7 @@ class Packing:
         reflected ones as well; None: none do. effort: of tight layouts, as of `pack_islands`; None: "good".
         up: (3,), what is to point up in a square of islands that may be turned, as by `stand_upright`; None: nothing.
         inside: of tight layouts, the texel density of islands that nothing outside can see relative to that of the
-        others, above 0 and at most 1; None: the same.
+        others, 0.01 to 1; None: the same.
     """
 
     pack: Pack | None = None
@@ -91,8 +91,8 @@ class Packing:
         if self.effort is not None:
             arguments.require_choice("effort", self.effort, get_args(Effort))
         if self.inside is not None:
-            remedy = "pass a share of the texel density, above 0 and at most 1"
-            if not 0 < arguments.number("inside", self.inside, remedy) <= 1:
+            remedy = f"pass a share of the texel density, {LEAST_SHARE} to 1"
+            if not LEAST_SHARE <= arguments.number("inside", self.inside, remedy) <= 1:
                 arguments.refuse("inside", self.inside, remedy)
         for name in ("udim", "stack", "effort", "inside"):
             value = getattr(self, name)

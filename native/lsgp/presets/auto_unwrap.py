@@ -223,8 +223,8 @@ def auto_unwrap(
     stack: in tight layouts, islands of one shape are stacked, as by `find_stacks`: "same", or "mirrored", which
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
     inside: in tight layouts, the texel density of islands that nothing outside can see, relative to that of the
-        others, for instance 0.25: no ray from them leaves the surface, which hides what is behind it from both sides.
-        ISLANDS_HIDDEN among the warnings says which. None: the same. Not with texels.
+        others, 0.01 to 1, for instance 0.25: no ray from them leaves the surface, which hides what is behind it from
+        both sides. ISLANDS_HIDDEN among the warnings says which. None: the same. Not with texels.
     effort: how long a tight layout is looked for, as of `pack_islands`; None: "quick" with "paint", else "good".
     seconds: after so many the best map made until then is packed quickly, and TIME_LIMIT among the warnings says so; it
         is raised where no map was made in time. None: no limit. Results depend on the machine then.

@@ -18,6 +18,7 @@ from ..api import cut_costs
 from ..base.arguments import FloatArray, IndexArray
 from ..errors import InputError
 from ..io.side_files import CutCostFile, UsageError, load_cut_costs
+from ..layouts.inside import LEAST_SHARE
 from ..layouts.packing import SHELVES, Effort, Pack, Packing, Stack
 from ..layouts.texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 from ..options import (
@@ -461,7 +462,7 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         metavar="F",
         type=_inside_option,
         help="in tight layouts, texel density of islands that nothing outside can see, relative to that of the others, "
-        "for instance 0.25; at most 1 (default: the same)",
+        "for instance 0.25; 0.01 to 1 (default: the same)",
     )
     unwrap.add_argument(
         "--effort",
@@ -473,8 +474,8 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
 
 def _inside_option(text: str) -> float:
     share = _number(text)
-    if not 0 < share <= 1:
-        raise argparse.ArgumentTypeError(f"'{text}': F is above 0 and at most 1")
+    if not LEAST_SHARE <= share <= 1:
+        raise argparse.ArgumentTypeError(f"'{text}': F is a share of the texel density, {LEAST_SHARE} to 1")
     return share
 
 

@@ -230,7 +230,8 @@ def test_islands_inside_have_their_share_of_the_texels(lsgp, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (("--preset", "paint", "--inside", "2"), "above 0 and at most 1"),
+        (("--preset", "paint", "--inside", "2"), "0.01 to 1"),
+        (("--preset", "paint", "--inside", "1e-300"), "0.01 to 1"),
         (("--preset", "tile", "--inside", "0.5"), "not seamless"),
         (("--inside", "0.5"), "--pack tight"),
         (("--pack", "shelves", "--inside", "0.5"), "--pack tight"),

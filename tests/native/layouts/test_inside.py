@@ -107,6 +107,7 @@ def test_without_hidden_islands_nothing_changes():
     "others",
     [
         {"inside": 0},
+        {"inside": 1e-300},
         {"inside": 1.5},
         {"inside": float("nan")},
         {"inside": 0.5, "preset": "tile"},
