@@ -214,6 +214,16 @@ def test_islands_of_any_size_are_packed_alike(size: float, fill: bool) -> None:
     assert np.array_equal(found, expected if fill else size * expected)
 
 
+@pytest.mark.parametrize("distance", [2.0**20, 3 * 2.0**28, 2.0**40])
+def test_islands_of_any_place_are_packed_alike(distance: float) -> None:
+    """No digit is lost before they are taken to the origin, from places where they have as many as near it."""
+    random = np.random.default_rng(7)
+    uv = np.round(random.uniform(0, 8, (30, 3, 2)) * 2**10) / 2**10
+    island = np.repeat(np.arange(10), 3)
+    far = uv + distance * np.array([1, -1])
+    assert np.array_equal(lsgp.pack_islands(far, island), lsgp.pack_islands(uv, island))
+
+
 def test_islands_that_no_square_can_hold_are_refused() -> None:
     island = np.arange(100)
     for uv in (np.full((100, 3, 2), 1e160), np.repeat(TRIANGLE, 100, axis=0) + 1e160):

@@ -230,8 +230,8 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   const auto [unit, packed_unit, of_outlines] = choose_units(corner_uv, island, given);
   const PackingOptions options = in_unit(given, packed_unit);
   CornerUv scaled = corner_uv;
-  for (double& coordinate : scaled.reshaped()) coordinate = unit.of(coordinate);
-  const Array<Body> bodies = bodies_of(scaled, island, options, of_outlines);
+  for (double& coordinate : scaled.reshaped()) coordinate = std::ldexp(coordinate, -unit.exponent);
+  const Array<Body> bodies = bodies_of(scaled, island, options, unit.factor, of_outlines);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
@@ -247,7 +247,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
       const auto& [tile, factor, shift] = motions[body_of[island[t]]];
       const Complex offset = shift + corner_of_tile(tile);
       for (Eigen::Index row = 3 * static_cast<Eigen::Index>(t); row < 3 * static_cast<Eigen::Index>(t) + 3; ++row) {
-        const Complex z = (Complex(scaled(row, 0), scaled(row, 1)) - body.origin) * factor + offset;
+        const Complex z = (Complex(scaled(row, 0), scaled(row, 1)) - body.low) / unit.factor * factor + offset;
         out(row, 0) = packed_unit.back(z.real());
         out(row, 1) = packed_unit.back(z.imag());
       }

@@ -84,8 +84,8 @@ Complex rounded_to(double quantum, Complex z) {
 }
 
 // The outline, area and hull of a body whose islands have these corners. Rounding does not hang on the order of
-// islands, triangles or corners.
-void add_shape(const Array<Array<Complex>>& corners_of, double quantum, Body& body) {
+// islands, triangles or corners; far from the origin only what is divided after the difference keeps its digits.
+void add_shape(const Array<Array<Complex>>& corners_of, double length, double quantum, Body& body) {
   constexpr double most = std::numeric_limits<double>::infinity();
   double left = most, bottom = most;
   for (const Index i : body.islands) {
@@ -94,12 +94,13 @@ void add_shape(const Array<Array<Complex>>& corners_of, double quantum, Body& bo
       bottom = std::min(bottom, z.imag());
     }
   }
-  body.origin = {left, bottom};
+  body.low = {left, bottom};
+  body.origin = body.low / length;
   Array<double> areas;
   Array<Outline> outlines;
   for (const Index i : body.islands) {
     Array<Complex> corners = corners_of[i];
-    for (Complex& z : corners) z = rounded_to(quantum, z - body.origin);
+    for (Complex& z : corners) z = rounded_to(quantum, (z - body.low) / length);
     for (auto corner = corners.begin(); corner != corners.end(); corner += 3) {
       const auto first = std::min_element(corner, corner + 3, [](Complex a, Complex b) { return is_before(a, b); });
       std::rotate(corner, first, corner + 3);
@@ -133,7 +134,7 @@ bool is_same(const Pose& a, const Pose& b) {
 }  // namespace
 
 Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
-                      double quantum) {
+                      double length, double quantum) {
   Index island_count = 0;
   for (const Index i : island) island_count = std::max(island_count, i + 1);
   Array<Index> of_group;
@@ -165,7 +166,7 @@ Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& islan
     body.keeps_scale |= lock.scale;
     body.keeps_place |= lock.place;
   }
-  for (Body& body : bodies) add_shape(corners, quantum, body);
+  for (Body& body : bodies) add_shape(corners, length, quantum, body);
   std::stable_sort(bodies.begin(), bodies.end(), is_body_before);
   return bodies;
 }

@@ -30,7 +30,8 @@ struct PackedLayout {
 
 struct Body {
   Array<Index> islands;  // their numbers
-  Complex origin;        // of the outline, in texture coordinates: the low corner of its box
+  Complex low;           // the low corner of its box, as the corners were given
+  Complex origin;        // of the outline, in texture coordinates: the same
   Outline outline;       // around its origin
   Array<Complex> hull;   // of the outline
   double area = 0;       // of all triangles
@@ -40,9 +41,10 @@ struct Body {
 };
 
 // The bodies, the largest ones first, in an order that hangs on nothing but their shapes and what they keep.
-// quantum: of which the coordinates of outlines are multiples; 0: of none.
+// length: the unit of outlines, of what corners are given in. quantum: of which the coordinates of outlines are
+// multiples; 0: of none.
 Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
-                      double quantum);
+                      double length, double quantum);
 
 // The area without the margin at its border; if islands have none to fill, a square of side 1 beyond the margin.
 UvRectangle inside_margins(const PackingOptions& options, bool has_area);
