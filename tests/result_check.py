@@ -30,11 +30,14 @@ def undeclared_faults(
     result: lsgp.Result,
     options: lsgp.Options = DEFAULTS,
     given: Mapping[int, float | None] | None = None,
+    *,
+    pressed: bool = False,
 ) -> list[str]:
     """Everything that is wrong with a result and that no warning of it names; empty for an honest one.
 
     options: what the map was made with: seams may be open borders, and the method "lscm" knows no transitions.
     given: the angles that were asked for, by cone, None for automatic ones; not judged where they are not told.
+    pressed: a preset chose the map, of positions that it rounds first.
     """
     faults = _wrong_figures(result) + ([] if given is None else _changed_angles(result, options, given))
     skipped = np.flatnonzero(~result.solved)
@@ -67,10 +70,23 @@ def undeclared_faults(
     if options.method == "lsgp":
         faults += _wrong_angles(result, opened, flipped) + _open_seams(surface, result, opened)
     if surface.directions is not None:
-        faults += _wrong_directions(surface, result)
+        slack = lost_by_pressing(surface) if pressed else np.zeros(len(surface.triangles))
+        faults += _wrong_directions(surface, result, slack)
     if options.seamless is not None:
         faults += seamless_faults(opened, result, options.seamless)
     return faults
+
+
+def lost_by_pressing(surface: lsgp.Surface) -> NDArray[np.float64]:
+    """(m,) what each triangle may be turned or stretched by, relatively, as presets round positions to 2^-32 of the
+    farthest corner's distance from the middle: both ends of an edge move by two halves of that along each axis."""
+    place = surface.positions[surface.triangles]
+    with np.errstate(all="ignore"):
+        first, last = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+        sides = np.linalg.norm([first, last, last - first], axis=2)
+        height = np.linalg.norm(np.cross(first, last), axis=1) / sides.max(axis=0)
+        radius = np.linalg.norm(np.ptp(place.reshape(-1, 3), axis=0))
+        return np.nan_to_num(2 * np.sqrt(3) * 2.0**-32 * radius / height, nan=np.inf)
 
 
 def _wrong_figures(result: lsgp.Result) -> list[str]:
@@ -113,8 +129,9 @@ def _changed_angles(result: lsgp.Result, options: lsgp.Options, given: Mapping[i
     return faults
 
 
-def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result) -> list[str]:
-    """The errors of directions are those of their images, which are combinations of the images of two edges."""
+def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result, slack: NDArray[np.float64]) -> list[str]:
+    """The errors of directions are those of their images, which are combinations of the images of two edges.
+    slack: (m,) radians."""
     place, z = surface.positions[surface.triangles], result.corner_uv @ [1, 1j]
     first, last = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
     normal = np.cross(first, last)
@@ -135,7 +152,8 @@ def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result) -> list[str]:
     wrong = sure & ~np.isin(np.arange(len(z)), named_by(result, "DUPLICATE_FACE"))
     turn = TURN / (1 if result.seamless is None else result.seamless.rotation_order)
     angle = np.angle(image[wrong] / 1j)
-    wrong[wrong] = ~(np.abs(np.abs(angle - turn * np.round(angle / turn)) - result.direction_errors[wrong]) <= ANGLE)
+    off = np.abs(np.abs(angle - turn * np.round(angle / turn)) - result.direction_errors[wrong])
+    wrong[wrong] = ~(off <= ANGLE + slack[wrong])
     return [f"the directions of {np.flatnonzero(wrong)[:5].tolist()} are off by other angles"] if wrong.any() else []
 
 

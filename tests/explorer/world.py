@@ -117,6 +117,7 @@ class World:
         self.pins: lsgp.Pins | None = None
         self.options = lsgp.Options()
         self.result: lsgp.Result | None = None
+        self.pressed = False  # by a preset
         self._renew_solver()
 
     def _renew_solver(self) -> None:
@@ -246,7 +247,7 @@ class World:
     def _judged(self, ended: Outcome) -> list[str]:
         if ended.error is not None:
             return error_faults(self.surface, ended.error)
-        self.result = ended.value
+        self.result, self.pressed = ended.value, False
         given = None
         if self.options.method == "lsgp" and len(set(self.cones)) == len(self.cones):
             given = dict(zip(self.cones, self.angles or [None] * len(self.cones), strict=False))
@@ -330,11 +331,11 @@ class World:
         ended = outcome(lambda: lsgp.auto_unwrap(self.surface, **how))
         if ended.error is not None:
             return ended.told, error_faults(self.surface, ended.error)
-        self.result = ended.value
+        self.result, self.pressed = ended.value, True
         faults = warning_faults(self.surface, self.result.warnings)
         # Islands are moved, some of them apart from others with which they are joined by transitions.
         opened, plain = replace(self.surface, borders=self.result.borders), lsgp.Options(method="lscm")
-        found = undeclared_faults(opened, self.result, plain)
+        found = undeclared_faults(opened, self.result, plain, pressed=True)
         if how.get("stack"):  # islands lie on others, turned or mirrored as these are
             so = ("overlap", "directions", "flipped")
             found = [fault for fault in found if not any(word in fault for word in so)]
@@ -403,7 +404,7 @@ class World:
             return ended.told, error_faults(self.surface, ended.error)
         faults = measurement_faults(self.surface, ended.value, uv)
         if self.result is not None and uv is self.result.corner_uv:
-            faults += same_measures(self.surface, self.result, ended.value)
+            faults += same_measures(self.surface, self.result, ended.value, pressed=self.pressed)
         return ended.told, faults
 
     def _command(self, step: Step) -> tuple[str, list[str]]:
