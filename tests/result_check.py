@@ -53,8 +53,10 @@ def undeclared_faults(
     z = opened.z.reshape(-1, 3)
     area = np.imag((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0]))
     flipped = opened.triangle[~(area > 0)]
-    if not np.isin(flipped, named_by(result, "FLIPPED_TRIANGLES")).all() or not np.isin(flipped, result.flipped).all():
-        faults.append(f"{len(flipped)} flipped triangles {flipped[:5].tolist()}, {len(result.flipped)} listed")
+    # Moved into a square, what is named as too small for its shape may collapse to a point.
+    kept = flipped[~np.isin(flipped, named_by(result, "ISLANDS_TINY"))]
+    if not np.isin(kept, named_by(result, "FLIPPED_TRIANGLES")).all() or not np.isin(kept, result.flipped).all():
+        faults.append(f"{len(kept)} flipped triangles {kept[:5].tolist()}, {len(result.flipped)} listed")
     faults += _hidden_overlaps(result, opened)
     unlisted = ~np.isin(edge_keys(*_open_edges(opened)), edge_keys(*result.cut_edges.T))
     if unlisted.any():
