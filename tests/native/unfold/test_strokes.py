@@ -122,7 +122,8 @@ def test_what_turns_alone_can_meet_changes_no_angle(directions: str) -> None:
 
 
 def test_rotations_about_handles_follow_strokes_with_given_angles() -> None:
-    """Where all angles are given, a seamless layout still has rotations about handles to choose."""
+    """Where all angles are given, a seamless layout still has rotations about handles to choose. Many tiles, since what
+    rounding to few costs is in no estimate."""
     mesh = meshes.subdivide(meshes.double_torus())
     placed = lsgp.place_cones(lsgp.Surface(mesh.positions, mesh.triangles), lattice="square")
     gains = []
@@ -133,14 +134,14 @@ def test_rotations_about_handles_follow_strokes_with_given_angles() -> None:
                 surface,
                 placed.cones,
                 placed.cone_angles,
-                lsgp.Options(seamless=lsgp.Seamless(tiles=64), follow_strokes=follow),
+                lsgp.Options(seamless=lsgp.Seamless(tiles=2048), follow_strokes=follow),
             )
             for follow in (False, True)
         )
         gains.append(missed(surface, usual, 4) - missed(surface, toward, 4))
-        assert toward.distortion.l2_stretch <= 1.2 * usual.distortion.l2_stretch
+        assert toward.distortion.l2_stretch <= MOST_STRETCH * usual.distortion.l2_stretch
     assert max(gains) > 10 * LEAST
-    assert min(gains) > -0.05
+    assert min(gains) > -LEAST
 
 
 @pytest.mark.slow
