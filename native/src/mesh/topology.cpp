@@ -158,13 +158,24 @@ Orientation orient(const Surface& surface, const PerTriangle<char>& skip, const 
   return out;
 }
 
+// Where triangles with open seams and others meet, more than two of them.
+bool is_partly_open(const EdgeTable& edges, Index edge, const EdgeMarks& marks, const OpenSeams& open_seams) {
+  const Index count = edges.halfedge_count(edge);
+  if (count < 3 || marks.border[edge] || !marks.seam[edge] || open_seams.empty()) return false;
+  Index open = 0;
+  for (Index i = 0; i < count; ++i) open += open_seams[edges.halfedge(edge, i) / 3] != 0;
+  return open > 0 && open < count;
+}
+
 // The twin of every halfedge across which the surface continues, none at others: at edges of two triangles that
-// are not open, and at those of more triangles as sheets run on.
+// are not open, and at those of more triangles as sheets run on, of which some may be open.
 PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks,
                                   const OpenSeams& open_seams, const PerTriangle<char>& skip) {
   PerHalfedge<Index> twin(3 * surface.triangles.rows(), none);
   PerEdge<char> crowded;
+  Array<Index> partly_open;
   for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (is_partly_open(edges, edge, marks, open_seams)) partly_open.push_back(edge);
     if (edges.halfedge_count(edge) < 2 || is_open(edges, edge, marks, open_seams)) continue;
     if (edges.halfedge_count(edge) == 2) {
       const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
@@ -175,9 +186,19 @@ PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges
     if (crowded.empty()) crowded.assign(edges.count(), 0);
     crowded[edge] = 1;
   }
-  if (crowded.empty()) return twin;
-  const Orientation parts = orient(surface, skip, twin);
-  continue_sheets(surface, edges, crowded, {parts.component, parts.reversed, parts.orientable}, twin);
+  if (!crowded.empty()) {
+    const Orientation parts = orient(surface, skip, twin);
+    continue_sheets(surface, edges, crowded, {parts.component, parts.reversed, parts.orientable}, twin);
+  }
+  if (partly_open.empty()) return twin;
+  // What is not open runs on as if nothing were.
+  const PerHalfedge<Index> unopened = join_halfedges(surface, edges, marks, {}, skip);
+  for (const Index edge : partly_open) {
+    for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
+      const Index h = edges.halfedge(edge, i), other = unopened[h];
+      if (other != none && !open_seams[h / 3] && !open_seams[other / 3]) twin[h] = other;
+    }
+  }
   return twin;
 }
 

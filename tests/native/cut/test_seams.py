@@ -297,3 +297,27 @@ def test_holes_that_stay_holes_need_no_edges_for_cuts() -> None:
     mesh, rims, _ = capped_cylinder()
     result = lsgp.parameterize(lsgp.Surface(mesh.positions, mesh.triangles, rims, rims), [])
     assert result.solved.all() and islands_of(result) == 3
+
+
+def test_fins_that_open_along_their_seams_leave_the_seams_of_a_body_with_cones_joined() -> None:
+    """Where three triangles meet at a seam, two of a body with cones and one of a fin without."""
+    ball = meshes.bumpy_sphere(2)
+    edge = ball.triangles[7, :2]
+    top = ball.positions[edge].mean(axis=0) * 2
+    count = len(ball.positions)
+    places = np.concatenate([ball.positions, [top, top * 1.5]])
+    fin = [[*edge, count], [count, edge[1], count + 1]]
+    whole = lsgp.Surface(
+        places, np.concatenate([ball.triangles, fin]), seams=np.array([edge, [edge[1], count]], np.int32)
+    )
+    alone = lsgp.parameterize(lsgp.Surface(ball.positions, ball.triangles, seams=edge[None]), ball.cones)
+    found = lsgp.parameterize(whole, ball.cones)
+    assert only(found.warnings, "SEAMS_OPENED").elements.indices.tolist() == [
+        len(ball.triangles),
+        len(ball.triangles) + 1,
+    ]
+    assert found.cones.tolist() == alone.cones.tolist() == sorted(ball.cones)
+    of_ball = found.corner_uv[: len(ball.triangles)]
+    lengths = [np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2) for uv in (of_ball, alone.corner_uv)]
+    assert lengths[0] == pytest.approx(lengths[1] * (lengths[0].sum() / lengths[1].sum()), rel=1e-9)
+    assert undeclared_faults(whole, found) == []
