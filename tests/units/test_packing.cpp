@@ -6,6 +6,7 @@
 #include <random>
 
 #include "packing/bit_columns.hpp"
+#include "packing/bit_kernels.hpp"
 #include "packing/bit_rows.hpp"
 #include "packing/body.hpp"
 #include "packing/construction.hpp"
@@ -152,6 +153,27 @@ TEST_CASE("texels that two rasters share at any place are those counted one by o
     std::ptrdiff_t words = 0;
     CHECK(shared_bits(a, b, {right, up}, 1 << 20, words) == expected);
     if (expected > 0) CHECK(shared_bits(a, b, {right, up}, expected - 1, words) > expected - 1);
+  }
+}
+
+TEST_CASE("all kernels of this processor count the bits that words share") {
+  std::mt19937_64 random(3);
+  std::uint64_t a[most_words_at_once], low[most_words_at_once], high[most_words_at_once];
+  for (int k = 0; k < 500; ++k) {
+    const int shift = k % 64, count = k % (most_words_at_once + 1);
+    int expected = 0;
+    for (int i = 0; i < most_words_at_once; ++i) {
+      a[i] = k < 100 ? ~std::uint64_t{0} : random();
+      low[i] = k < 100 ? ~std::uint64_t{0} : random();
+      high[i] = k < 100 ? ~std::uint64_t{0} : random();
+      for (int bit = 0; bit < 64 && i < count; ++bit) {
+        const int from = bit + shift;
+        const std::uint64_t other = from < 64 ? low[i] >> from : high[i] >> (from - 64);
+        expected += static_cast<int>(a[i] >> bit & other & 1);
+      }
+    }
+    for (const SharedBitsOfWords kernel : kernels_of_shared_bits())
+      CHECK(kernel(a, low, high, shift, count) == expected);
   }
 }
 

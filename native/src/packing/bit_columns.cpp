@@ -3,27 +3,13 @@
 
 #include <algorithm>
 
+#include "packing/bit_kernels.hpp"
+
 namespace lsgp {
 
 namespace {
 
-using Word = BitColumns::Word;
-
-// The bits set of eight fit into a byte for so many words.
-constexpr int most_words = 255 / 8;
-
 int floor_divided(int number, int by) { return number >= 0 ? number / by : -((by - 1 - number) / by); }
-
-// The bits that are set both in `a` and in the words that begin `shift` bits into `low`, of at most `most_words` words.
-int shared_bits_of_words(const Word* a, const Word* low, const Word* high, int shift, int count) {
-  constexpr Word even_bytes = 0x00ff00ff00ff00ff, ones = 0x0001000100010001;
-  Word sums = 0;
-  for (int i = 0; i < count; ++i) {
-    sums += bits_of_bytes(a[i] & (low[i] >> shift | high[i] << 1 << (BitColumns::word_bits - 1 - shift)));
-  }
-  sums = (sums & even_bytes) + (sums >> 8 & even_bytes);
-  return static_cast<int>(sums * ones >> 48);
-}
 
 }  // namespace
 
@@ -42,14 +28,15 @@ int shared_bits(const BitColumns& a, const BitColumns& b, TexelShift shift, int 
   const int first = std::max(floor_divided(right, BitColumns::word_bits), 0);
   const int end = std::min(floor_divided(right + b.columns() - 1, BitColumns::word_bits) + 1, a.words());
   const int top = std::min(a.rows(), up + b.rows());
+  static const SharedBitsOfWords shared = kernels_of_shared_bits().front();
   int count = 0;
-  for (int y = std::max(up, 0); y < top && count <= most; y += most_words) {
-    const int rows = std::min(top - y, most_words);
+  for (int y = std::max(up, 0); y < top && count <= most; y += most_words_at_once) {
+    const int rows = std::min(top - y, most_words_at_once);
     for (int k = first; k < end; ++k) {
       const int from = k * BitColumns::word_bits - right;
       const int number = floor_divided(from, BitColumns::word_bits);
-      count += shared_bits_of_words(a.column(k) + y, b.column(number) + y - up, b.column(number + 1) + y - up,
-                                    from - number * BitColumns::word_bits, rows);
+      count += shared(a.column(k) + y, b.column(number) + y - up, b.column(number + 1) + y - up,
+                      from - number * BitColumns::word_bits, rows);
     }
     words += std::ptrdiff_t{rows} * std::max(end - first, 0);
   }
