@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "base/checkpoint.hpp"
 
@@ -38,8 +40,14 @@ struct Reach {
   }
 };
 
-int clamped(double number, int least, int most) {
-  return static_cast<int>(std::clamp(number, static_cast<double>(least), static_cast<double>(most)));
+// Rounded down and up, from 0 to `most`; without the calls that std::floor and std::ceil are on old processors.
+int floor_up_to(int most, double number) {
+  return static_cast<int>(std::clamp(number, 0.0, static_cast<double>(most)));
+}
+int ceil_up_to(int most, double number) {
+  const double within = std::clamp(number, 0.0, static_cast<double>(most));
+  const int whole = static_cast<int>(within);
+  return whole < within ? whole + 1 : whole;
 }
 
 // The texels near a segment.
@@ -47,8 +55,9 @@ void draw_segment(Complex a, Complex b, double reach, BitRows& raster) {
   const double length = std::abs(b - a);
   const Complex away = length > 0 ? Complex(a.imag() - b.imag(), b.real() - a.real()) * (reach / length) : Complex(0);
   const double low = std::min(a.imag(), b.imag()) - reach, high = std::max(a.imag(), b.imag()) + reach;
-  const int end = clamped(std::max(std::ceil(high), std::floor(low) + 1), 0, raster.rows());
-  for (int row = clamped(std::floor(low), 0, raster.rows()); row < end; ++row) {
+  const int first = floor_up_to(raster.rows(), low);
+  const int end = std::max(ceil_up_to(raster.rows(), high), floor_up_to(raster.rows(), low + 1));
+  for (int row = first; row < end; ++row) {
     Reach found;
     found.add_segment(a + away, b + away, row, row + 1.0);
     if (reach > 0) {
@@ -57,38 +66,50 @@ void draw_segment(Complex a, Complex b, double reach, BitRows& raster) {
       found.add_disk(b, reach, row, row + 1.0);
     }
     if (found.low > found.high) continue;
-    const int begin = clamped(std::floor(found.low), 0, raster.columns());
-    raster.set(row, begin, std::max(clamped(std::ceil(found.high), 0, raster.columns()), begin + 1));
+    const int begin = floor_up_to(raster.columns(), found.low);
+    raster.set(row, begin, std::max(ceil_up_to(raster.columns(), found.high), begin + 1));
   }
 }
 
 struct Crossing {
-  int row;
   double x;
   int winding;
 };
 
 // The texels whose middle line is inside: of those that no segment touches, all that are inside.
 void fill(const Outline& outline, BitRows& raster) {
-  Array<Crossing> crossings;
+  const auto rows_crossed = [&](Complex a, Complex b) {
+    const auto [low, high] = std::minmax({a.imag(), b.imag()});
+    return std::pair(ceil_up_to(raster.rows(), low - 0.5), ceil_up_to(raster.rows(), high - 0.5));
+  };
+  // Those of each row follow each other.
+  Array<Index> begin(raster.rows() + 1, 0);
   outline.for_each_segment([&](Complex a, Complex b) {
+    const auto [first, end] = rows_crossed(a, b);
+    for (int row = first; row < end; ++row) ++begin[row + 1];
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  Array<Crossing> crossings(begin.back());
+  Array<Index> next(begin.begin(), begin.end() - 1);
+  outline.for_each_segment([&](Complex a, Complex b) {
+    const auto [first, end] = rows_crossed(a, b);
     const int winding = a.imag() < b.imag() ? 1 : -1;
     if (winding < 0) std::swap(a, b);
-    const int end = clamped(std::ceil(b.imag() - 0.5), 0, raster.rows());
-    for (int row = clamped(std::ceil(a.imag() - 0.5), 0, raster.rows()); row < end; ++row) {
+    for (int row = first; row < end; ++row) {
       const double share = (row + 0.5 - a.imag()) / (b.imag() - a.imag());
-      crossings.push_back({row, a.real() + share * (b.real() - a.real()), winding});
+      crossings[next[row]++] = {a.real() + share * (b.real() - a.real()), winding};
     }
   });
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return a.row != b.row ? a.row < b.row : a.x != b.x ? a.x < b.x : a.winding < b.winding;
-  });
-  int winding = 0;
-  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-    winding += crossings[i].winding;
-    if (winding == 0) continue;
-    raster.set(crossings[i].row, clamped(std::floor(crossings[i].x), 0, raster.columns()),
-               clamped(std::ceil(crossings[i + 1].x), 0, raster.columns()));
+  for (int row = 0; row < raster.rows(); ++row) {
+    const auto of_row = crossings.begin() + begin[row], end = crossings.begin() + begin[row + 1];
+    std::sort(of_row, end,
+              [](const Crossing& a, const Crossing& b) { return a.x != b.x ? a.x < b.x : a.winding < b.winding; });
+    int winding = 0;
+    for (auto crossing = of_row; end - crossing > 1; ++crossing) {
+      winding += crossing->winding;
+      if (winding == 0) continue;
+      raster.set(row, floor_up_to(raster.columns(), crossing->x), ceil_up_to(raster.columns(), (crossing + 1)->x));
+    }
   }
 }
 

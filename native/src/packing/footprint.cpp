@@ -22,13 +22,11 @@ Footprint::Footprint(const Outline& outline) {
   BitRows raster(static_cast<int>(std::floor(box.top)) + 1, static_cast<int>(std::floor(box.right)) + 1);
   draw(outline, 0, raster);
   for (int row = 0; row < raster.rows(); ++row) {
-    int begin = -1;
-    for (int column = 0; column <= raster.columns(); ++column) {
-      const bool is_taken = column < raster.columns() && raster.is_set(row, column);
-      if (is_taken && begin < 0) begin = column;
-      if (is_taken || begin < 0) continue;
-      spans_.push_back({row, begin, column, level_of(column - begin)});
-      begin = -1;
+    const int columns = raster.columns();
+    for (int begin = raster.next(true, row, 0, columns); begin < columns;) {
+      const int end = raster.next(false, row, begin, columns);
+      spans_.push_back({row, begin, end, level_of(end - begin)});
+      begin = raster.next(true, row, end, columns);
     }
   }
   std::stable_sort(spans_.begin(), spans_.end(),
