@@ -37,13 +37,17 @@ lsgp::PackingOptions to_packing_options(const py::dict& values) {
 }
 
 FloatArray pack_islands(const FloatArray& corner_uv, const IndexArray& island, const py::dict& option_values,
-                        const ProgressCallback& progress) {
+                        const ProgressCallback& progress, const std::optional<FloatArray>& packed_quickly) {
   const std::vector<Index> islands = to_vector("island", island);
-  const lsgp::CornerUv uv = to_corner_uv(corner_uv, static_cast<py::ssize_t>(islands.size()));
+  const auto count = static_cast<py::ssize_t>(islands.size());
+  const lsgp::CornerUv uv = to_corner_uv(corner_uv, count);
+  std::optional<lsgp::CornerUv> quick;
+  if (packed_quickly) quick = to_corner_uv(*packed_quickly, count);
   const lsgp::PackingOptions options = to_packing_options(option_values);
   const lsgp::Progress tell = to_progress(progress);
-  const lsgp::CornerUv packed = without_gil([&] { return lsgp::pack_islands(uv, islands, options, tell); });
-  return to_array(packed.data(), {static_cast<py::ssize_t>(islands.size()), 3, 2});
+  const lsgp::CornerUv packed =
+      without_gil([&] { return lsgp::pack_islands(uv, islands, options, tell, quick ? &*quick : nullptr); });
+  return to_array(packed.data(), {count, 3, 2});
 }
 
 py::dict shape_patches(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, const IndexArray& triangles,
@@ -95,5 +99,6 @@ void define_layouts(py::module_& module) {
              "pinned"_a, "progress"_a);
   module.def("usual_margin", &usual_margin, "corner_uv"_a, "island"_a, "tiles"_a);
   module.def("hidden_islands", &hidden_islands, "surface"_a, "island"_a, "progress"_a);
-  module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a);
+  module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a,
+             "packed_quickly"_a = py::none());
 }

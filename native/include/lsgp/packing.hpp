@@ -57,8 +57,11 @@ struct PackingOptions {
 // The texture coordinates of islands, each moved as a whole by a turn, a translation and a scale, so that they keep
 // their margins.  island: (m) the number of each triangle's island, -1: it does not move. WRONG_PARAMETER, with the
 // triangles of the islands concerned: coordinates that are not finite, margins without room, what does not fit.
+// packed_quickly: what this returns for `quick` and otherwise the same options, with `fill`, so that it need not be
+// found again; null: not known.
 LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island,
-                               const PackingOptions& options = {}, const Progress& progress = {});
+                               const PackingOptions& options = {}, const Progress& progress = {},
+                               const CornerUv* packed_quickly = nullptr);
 
 // The margin where none is asked for: that of PackingOptions or, of so many islands that the gaps between them would
 // take more than a quarter of their room, as much less as makes it a quarter. At least half a texel of a texture of

@@ -159,22 +159,23 @@ def pack_islands(
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     count = int(island.max(initial=-1)) + 1
     options = _options(margin, fill, turned, udim, effort, seconds, area, snap)
-    options["groups"] = np.zeros(0, np.int32) if groups is None else _group_numbers(groups, count)
+    if groups is not None:
+        options["groups"] = _group_numbers(groups, count)
     options["locks"] = _lock_flags(locks, count)
     return _lsgp.pack_islands(uv, island, options, progress)
 
 
 def _options(
     margin: float,
-    fill: bool,
-    turned: Turned,
-    udim: int | None,
-    effort: Effort,
-    seconds: float | None,
-    area: Sequence[float] | None,
-    snap: float | None,
+    fill: bool = True,
+    turned: Turned = True,
+    udim: int | None = None,
+    effort: Effort = "good",
+    seconds: float | None = None,
+    area: Sequence[float] | None = None,
+    snap: float | None = None,
 ) -> dict[str, Any]:
-    """Those of the native function but for groups and locks.  Raises InputError."""
+    """Those of the native function, without groups and locks.  Raises InputError."""
     fills = arguments.flag("fill", fill)
     if not isinstance(turned, bool | np.bool_) and not (isinstance(turned, str) and turned == "quarters"):
         arguments.refuse("turned", turned, 'pass True, False or "quarters"')
@@ -199,6 +200,8 @@ def _options(
         "area": rectangle,
         "tiles": tiles,
         "snap": 0.0 if snap is None else arguments.positive("snap", snap, "pass the side of a block, above 0"),
+        "groups": np.zeros(0, np.int32),
+        "locks": np.zeros((0, 3), bool),
     }
 
 
@@ -281,18 +284,17 @@ def laid_out(
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
-    others = (packing.margin, packing.udim, packing.stack, packing.inside)
-    is_usual = packing.effort == "quick" and others == (None, None, None, None)
+    if (packing.margin, packing.udim, packing.stack, packing.inside) != (None, None, None, None):
+        packed_quickly = None
     margin = packing.margin
     if margin is None:
         margin = _lsgp.usual_margin(result.corner_uv, result.island, packing.udim or 1)
     pack: Pack = "tight"
     try:
-        if is_usual and packed_quickly is not None:
-            packed, stacked = replace(result, corner_uv=packed_quickly), none
-            tell(progress, 1.0)
-        else:
-            packed, stacked = _packed(result, packing.stack, margin, **how, udim=packing.udim, progress=progress)
+        how["udim"] = packing.udim
+        packed, stacked = _packed(
+            result, packing.stack, margin, **how, packed_quickly=packed_quickly, progress=progress
+        )
         if packing.up is not None and how["turned"] and packing.udim in (None, 1) and packing.stack is None:
             turns = upright_turns(surface, packed.corner_uv, packed.island, packing.up)
             packed = replace(packed, corner_uv=stand_upright(packed.corner_uv, packed.island, turns, margin=margin))
@@ -305,12 +307,19 @@ def laid_out(
 
 
 def _packed(
-    result: Result, stack: Stack | None, margin: float, *, progress: Progress | None, **how: Any
+    result: Result,
+    stack: Stack | None,
+    margin: float,
+    *,
+    progress: Progress | None,
+    packed_quickly: FloatArray | None = None,
+    **how: Any,
 ) -> tuple[Result, NDArray[np.bool_]]:
-    """The result packed, and the triangles, (m,) bool, that overlap others.  progress, how: as for `pack_islands`."""
+    """The result packed, and the triangles, (m,) bool, that overlap others.  progress, how: as for `pack_islands`.
+    packed_quickly: as of `laid_out`, without stacks."""
     uv, island = result.corner_uv, result.island
     if stack is None:
-        packed = pack_islands(uv, island, margin, **how, progress=progress)
+        packed = _lsgp.pack_islands(uv, island, _options(margin, **how), progress, packed_quickly)
         return replace(result, corner_uv=packed), np.zeros(len(island), bool)
     stacks = find_stacks(uv, island, mirrored=stack == "mirrored", progress=share_of(progress, 0.0, _STACKING))
     left = np.where(stacks.kept, island, -1).astype(np.int32)

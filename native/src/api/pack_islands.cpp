@@ -210,10 +210,12 @@ void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& i
               triangles_of(island, both));
 }
 
-Array<BodyMotion> motions_of(const Array<Body>& bodies, const std::vector<Index>& island, const PackingOptions& options,
-                             double unit, ProgressMonitor& monitor) {
+// side_of_quick: as of best_layout; none: there is no better one.
+std::optional<PackedLayout> layout_of(const Array<Body>& bodies, const std::vector<Index>& island,
+                                      const PackingOptions& options, double unit, std::optional<double> side_of_quick,
+                                      ProgressMonitor& monitor) {
   try {
-    return best_layout(bodies, options, unit, monitor).motions;
+    return best_layout(bodies, options, unit, side_of_quick, monitor);
   } catch (const NoRoom& error) {
     throw Error(Code::wrong_parameter, error.message, triangles_of(island, error.islands));
   }
@@ -222,7 +224,7 @@ Array<BodyMotion> motions_of(const Array<Body>& bodies, const std::vector<Index>
 }  // namespace
 
 CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& given,
-                      const Progress& progress) {
+                      const Progress& progress, const CornerUv* packed_quickly) {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
@@ -233,10 +235,25 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   for (double& coordinate : scaled.reshaped()) coordinate = std::ldexp(coordinate, -unit.exponent);
   const Array<Body> bodies = bodies_of(scaled, island, options, unit.factor, of_outlines);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
+  if (packed_quickly != nullptr) {
+    require_valid(*packed_quickly, island, given);
+    if (given.effort == PackingEffort::quick) {
+      monitor.advance(1);
+      return *packed_quickly;
+    }
+  }
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
-    const Array<BodyMotion> motions = motions_of(bodies, island, options, packed_unit.back(1), monitor);
+    std::optional<double> side_of_quick;  // in the unit of lengths in the search
+    if (packed_quickly != nullptr)
+      side_of_quick = root_of_area(scaled, island, {}) / root_of_area(*packed_quickly, island, packed_unit);
+    const auto found = layout_of(bodies, island, options, packed_unit.back(1), side_of_quick, monitor);
+    if (!found) {
+      monitor.advance(1);
+      return *packed_quickly;
+    }
+    const Array<BodyMotion>& motions = found->motions;
     Array<Index> body_of(island_count, -1);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       for (const Index i : bodies[b].islands) body_of[i] = static_cast<Index>(b);

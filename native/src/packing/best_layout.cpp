@@ -148,18 +148,19 @@ class Given {
 
 }  // namespace
 
-PackedLayout best_layout(const Array<Body>& bodies, const PackingOptions& options, double unit,
-                         ProgressMonitor& monitor) {
+std::optional<PackedLayout> best_layout(const Array<Body>& bodies, const PackingOptions& options, double unit,
+                                        std::optional<double> side_of_quick, ProgressMonitor& monitor) {
   // What searches of less effort take of the progress of all, about as of the time: quick 0.03 to 0.1 of good with 10
   // to 100 islands and 0.3 with more, good 0.02 of best.
   constexpr double share_of_less = 0.05;
-  PackedLayout best;
+  std::optional<PackedLayout> best;
+  double side = side_of_quick.value_or(std::numeric_limits<double>::infinity());
   std::optional<NoRoom> refused;
   std::optional<LayoutSearch> earlier;
   const auto begin = Budget::Clock::now();
   const auto last = static_cast<int>(options.effort);
   Array<PackingOptions> how(last + 1, options);
-  for (int effort = 0; effort <= last; ++effort) {
+  for (int effort = side_of_quick ? 1 : 0; effort <= last; ++effort) {
     how[effort].effort = static_cast<PackingEffort>(effort);
     how[effort].seconds.reset();
     if (effort == last && options.seconds) {
@@ -173,16 +174,18 @@ PackedLayout best_layout(const Array<Body>& bodies, const PackingOptions& option
       LayoutSearch search(bodies, how[effort], unit, monitor);
       if (earlier) search.go_on_from(*earlier);
       PackedLayout found = search.best();
-      if (best.motions.empty() || found.side < best.side) best = std::move(found);
+      if (found.side < side) {
+        side = found.side;
+        best = std::move(found);
+      }
       if (effort == static_cast<int>(PackingEffort::good)) earlier.emplace(std::move(search));
     } catch (NoRoom& error) {
       refused = std::move(error);
     }
   }
   const Given given(bodies, options);
-  const bool is_better = best.motions.empty() || given.side() < best.side;
-  if (given.side() > 0 && is_better && given.keeps_margins()) return given.layout();
-  if (best.motions.empty()) throw *refused;
+  if (given.side() > 0 && given.side() < side && given.keeps_margins()) return given.layout();
+  if (!best && !side_of_quick) throw *refused;
   return best;
 }
 

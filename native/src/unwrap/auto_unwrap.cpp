@@ -83,12 +83,14 @@ void scale_hidden(const Surface& surface, double scale, Result& result, const Pr
 }
 
 // Packs the islands of a map, unless its margins leave no room.
-void pack(Result& result, std::optional<double> margin, PackingEffort effort, const Progress& progress) try {
+// packed_quickly: as for pack_islands.
+void pack(Result& result, std::optional<double> margin, PackingEffort effort, const CornerUv* packed_quickly,
+          const Progress& progress) try {
   PackingOptions options;
   options.margin = margin ? *margin : usual_margin(result.corner_uv, result.island);
   options.turns = turns_of(result);
   options.effort = effort;
-  result.corner_uv = pack_islands(result.corner_uv, result.island, options, progress);
+  result.corner_uv = pack_islands(result.corner_uv, result.island, options, progress, packed_quickly);
 } catch (const Error& error) {
   if (error_kind(error.code()) != ErrorKind::input) throw;
   tell(progress, 1);
@@ -194,13 +196,9 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     if (options.inside) scale_hidden(whole, *options.inside, out.result, share_of(last, 0, looking));
     const PackingEffort effort = limit.is_over() ? PackingEffort::quick : options.effort.value_or(preset.effort);
     const Progress packing = options.inside ? share_of(last, looking, 1) : last;
-    const bool is_usual = effort == PackingEffort::quick && !options.margin && !options.inside;
-    if (is_usual && out.packed_quickly) {
-      out.result.corner_uv = *out.packed_quickly;
-      tell(packing, 1);
-    } else {
-      pack(out.result, options.margin, effort, packing);
-    }
+    const CornerUv* const known =
+        out.packed_quickly && !options.margin && !options.inside ? &*out.packed_quickly : nullptr;
+    pack(out.result, options.margin, effort, known, packing);
   }
   return out;
 }
