@@ -16,14 +16,16 @@ namespace lsgp {
 
 namespace {
 
-constexpr double tolerance = 0.1;        // mean edge lengths between a vertex and the image of another
-constexpr double near_tolerance = 0.02;  // of the diagonal of the surface's box, between its mirror image and itself
-constexpr double paired_within = 0.5;    // mean edge lengths between a vertex and the image of another, then
-constexpr double least_matched = 0.98;   // of the vertices of a symmetric surface
-constexpr double likely_matched = 0.9;   // of some of them
-constexpr double least_moved = 0.1;      // of the vertices, whose images are others
-constexpr Index most_samples = 500;      // that judge a plane before all vertices do
-constexpr int most_fits = 20;            // of a plane
+constexpr double tolerance = 0.1;           // mean edge lengths between a vertex and the image of another
+constexpr double near_tolerance = 0.02;     // of the diagonal of the surface's box, between its mirror image and itself
+constexpr double paired_within = 0.5;       // mean edge lengths between a vertex and the image of another, then
+constexpr double least_matched = 0.98;      // of the vertices of a symmetric surface
+constexpr double likely_matched = 0.9;      // of some of them
+constexpr double least_moved = 0.1;         // of the vertices, whose images are others
+constexpr Index most_samples = 500;         // that judge a plane before all vertices do
+constexpr std::size_t first_samples = 100;  // of those, about, that it is fitted to first
+constexpr double hopeful = 0.5;             // of the samples, near their images in such a plane: it is fitted to all
+constexpr int most_fits = 20;               // of a plane
 constexpr double operations_a_search = 500;
 
 // The distance of a point from a triangle.
@@ -95,8 +97,7 @@ class MirroredSurface {
     Mirroring best;
     double least = std::numeric_limits<double>::infinity();
     for (const MirrorPlane& plane : planes) {
-      const auto is_near = [&](Index v) { return gap(plane, v) <= near_tolerance * extent_; };
-      if (!is_likely(is_near)) continue;
+      if (!is_likely([&](Index v) { return is_near(plane, v); })) continue;
       PerVertex<Index> images = paired(plane);
       if (!moves(images)) continue;
       Index matched = 0;
@@ -121,10 +122,23 @@ class MirroredSurface {
     return moved >= least_moved * static_cast<double>(images.size());
   }
 
-  // Moves a plane to where the images of points are nearest to the surface: nearest points and the best plane for them
-  // in turn (iterative closest points).
-  MirrorPlane fitted(MirrorPlane plane) const {
-    Array<Index> image = samples_;
+  // Moves a plane to where the images of points are nearest to the surface: of few first and, where many of these are
+  // near it then, of all samples.
+  MirrorPlane fitted(const MirrorPlane& plane) const {
+    const std::size_t step = std::max<std::size_t>(samples_.size() / first_samples, 1);
+    Array<Index> few;
+    for (std::size_t i = 0; i < samples_.size(); i += step) few.push_back(samples_[i]);
+    const MirrorPlane first = fitted(plane, few);
+    const auto near = std::count_if(few.begin(), few.end(), [&](Index v) { return is_near(first, v); });
+    return step > 1 && near >= hopeful * static_cast<double>(few.size()) ? fitted(first, samples_) : first;
+  }
+
+ private:
+  bool is_near(const MirrorPlane& plane, Index v) const { return gap(plane, v) <= near_tolerance * extent_; }
+
+  // Nearest points and the best plane for them in turn (iterative closest points).
+  MirrorPlane fitted(MirrorPlane plane, const Array<Index>& samples) const {
+    Array<Index> image = samples;
     Positions from(image.size(), 3), to(image.size(), 3);
     for (std::size_t i = 0; i < image.size(); ++i)
       from.row(static_cast<Eigen::Index>(i)) = mesh_.positions.row(image[i]);
@@ -146,7 +160,6 @@ class MirroredSurface {
     return plane;
   }
 
- private:
   static Index needed(Index count) { return static_cast<Index>(std::ceil(least_matched * count)); }
   static Index count_matched(const PerVertex<Index>& images) {
     return static_cast<Index>(images.size()) - static_cast<Index>(std::count(images.begin(), images.end(), none));
