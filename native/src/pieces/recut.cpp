@@ -83,6 +83,7 @@ class Recutter {
   void span();
   double cost_of(const Array<char>& in_tree) const;
   double measure_overlap();
+  void find_shared_with_others();
   void descend(double weight);
   Exchange best_exchange(Index opened, double weight, Array<Index>& moving);
   Array<Index> pieces_behind(Index opened, Index seed) const;
@@ -99,7 +100,8 @@ class Recutter {
   PerPart<Array<Index>> paths_of_;  // that lead to other pieces
   PerPart<Circle> circles_;         // around the pieces where they were at first
   State now_;
-  Array<char> is_open_;  // (paths) in the current state
+  Array<char> is_open_;                 // (paths) in the current state
+  PerPart<double> shared_with_others_;  // the area of each piece that others of its island cover in the current state
   double first_cost_ = 0;
   double work_ = 0;  // so far, in sides of boundary polygons
 };
@@ -211,6 +213,22 @@ double Recutter::measure_overlap() {
   return out;
 }
 
+void Recutter::find_shared_with_others() {
+  shared_with_others_.assign(graph_.piece_count(), 0);
+  PerPart<char> is_found(graph_.piece_count(), 0);
+  for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
+    if (is_found[seed]) continue;
+    const Array<Index> island = pieces_behind(none, seed);
+    const CoverageRaster whole = raster_of(island);
+    const auto always = [](double) { return true; };
+    for (const Index piece : island) {
+      is_found[piece] = 1;
+      shared_with_others_[piece] =
+          std::max(shared(whole, {piece}, {}, always) - shared(raster_of({piece}), {piece}, {}, always), 0.0);
+    }
+  }
+}
+
 // The smaller side moves; overlaps within each side do not change.
 Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<Index>& moving) {
   moving = pieces_behind(opened, graph_.paths[opened].left);
@@ -219,10 +237,12 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
   PerPart<Side> side(graph_.piece_count(), Side::elsewhere);
   for (const Index piece : moving) side[piece] = Side::moving;
   for (const Index piece : resting) side[piece] = Side::resting;
-  const CoverageRaster rest = raster_of(resting);
-  const double without = now_.overlap - shared(rest, moving, {}, [](double) { return true; });
+  double most_removed = 0;
+  for (const Index piece : moving) most_removed += shared_with_others_[piece];
   Exchange best;
   double least = score(now_.overlap, now_.cost, weight) - least_score_gain;
+  const auto gains = [&](double overlap, double cost) { return score(overlap, cost, weight) < least; };
+  Array<Exchange> hopeful;
   Array<char> in_tree = now_.in_tree;
   in_tree[opened] = 0;
   for (Index p = 0; p < ssize(graph_.paths); ++p) {
@@ -230,18 +250,23 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
     const bool moves_left = side[path.left] == Side::moving;
     if (!is_open_[p] || side[moves_left ? path.right : path.left] != Side::resting) continue;
     if (!moves_left && side[path.right] != Side::moving) continue;
-    const Motion to_meet = now_.motion[path.right] * path.across * now_.motion[path.left].inverse();
-    const Motion motion = moves_left ? to_meet : to_meet.inverse();
-    const auto may_gain = [&](double overlap) { return score(overlap, 0, weight) < least; };  // if it cost nothing
-    const double overlap =
-        without + shared(rest, moving, motion, [&](double so_far) { return may_gain(without + so_far); });
-    if (!may_gain(overlap)) continue;
     in_tree[p] = 1;
     const double cost = cost_of(in_tree);
     in_tree[p] = 0;
-    if (cost > largest_cost * first_cost_ || !(score(overlap, cost, weight) < least)) continue;
-    least = score(overlap, cost, weight);
-    best = {p, motion, overlap, cost};
+    if (cost > largest_cost * first_cost_ || !gains(now_.overlap - most_removed, cost)) continue;
+    const Motion to_meet = now_.motion[path.right] * path.across * now_.motion[path.left].inverse();
+    hopeful.push_back({p, moves_left ? to_meet : to_meet.inverse(), 0, cost});
+  }
+  if (hopeful.empty()) return best;
+  const CoverageRaster rest = raster_of(resting);
+  const double without = now_.overlap - shared(rest, moving, {}, [](double) { return true; });
+  for (Exchange& exchange : hopeful) {
+    if (!gains(without, exchange.cost)) continue;
+    const auto may_gain = [&](double so_far) { return gains(without + so_far, exchange.cost); };
+    exchange.overlap = without + shared(rest, moving, exchange.motion, may_gain);
+    if (!gains(exchange.overlap, exchange.cost)) continue;
+    least = score(exchange.overlap, exchange.cost, weight);
+    best = exchange;
   }
   return best;
 }
@@ -251,6 +276,7 @@ void Recutter::descend(double weight) {
   now_.overlap = measure_overlap();
   now_.cost = cost_of(now_.in_tree);
   is_open_ = open_paths(graph_, now_.in_tree);
+  find_shared_with_others();
   Array<Index> moving;
   const Index count = static_cast<Index>(graph_.paths.size());
   for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried) {
@@ -263,6 +289,7 @@ void Recutter::descend(double weight) {
     now_.overlap = exchange.overlap;
     now_.cost = exchange.cost;
     is_open_ = open_paths(graph_, now_.in_tree);
+    find_shared_with_others();
     tried = 0;
   }
 }
