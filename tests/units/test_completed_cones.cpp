@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "balls.hpp"
 #include "choices/feature_choice.hpp"
 #include "lsgp/lsgp.hpp"
 
@@ -92,6 +93,24 @@ TEST_CASE("what placement and map both find is told once, and what cuts could no
   Result result = stretched(1);
   result.warnings = {{Code::cuts_not_mirrored, "They are not.", {}}, both};
   CHECK(codes(findings_of(cones, result, {})) == std::vector{Code::degenerate_faces});
+}
+
+TEST_CASE("placement ends without a map where it takes more cones than are wanted") {
+  const Surface ball = uneven_ball(1000);
+  PlacementOptions options;
+  options.target = 1.005;
+  const Placement whole = place_cones(ball, {}, options);
+  REQUIRE(whole.reached);
+  const int count = static_cast<int>(whole.cones.size());
+  options.most = count / 2;
+  const Placement left = place_cones(ball, {}, options);
+  CHECK_FALSE(left.reached);
+  CHECK(left.maps == 0);
+  CHECK(static_cast<int>(left.cones.size()) > count / 2);
+  options.most = 4 * count;
+  const Placement same = place_cones(ball, {}, options);
+  CHECK(same.cones == whole.cones);
+  CHECK(same.cone_angles == whole.cone_angles);
 }
 
 TEST_CASE("the usual layout is made once where cones for creases admit none") {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "balls.hpp"
 #include "measures/objective.hpp"
 
 using namespace lsgp;
@@ -164,6 +165,27 @@ TEST_CASE("beyond the bound is what costs more than another map by more than est
   CHECK_FALSE(objective.is_beyond_bound(other));
   other.stretch = 2 + 2 * error_of_estimates;
   CHECK(objective.is_beyond_bound(other));
+}
+
+TEST_CASE("with one cone more than the most of a bound a map is beyond it") {
+  Weights weights;
+  weights.cones = 0.125;
+  Objective objective{weights, {}};
+  const Surface ball = uneven_ball(100);
+  const SurfaceParts parts(ball);
+  CHECK_FALSE(objective.most_cones(parts));  // there is no bound
+  Quality rival;
+  rival.stretch = 3;
+  const Objective::Bound bound(objective, rival);
+  const std::optional<int> most = objective.most_cones(parts);
+  REQUIRE(most);
+  const auto through = [&](int count) {
+    Quality expected = objective.expected_through(parts, {}, Mode::conformal);
+    expected.cones = count;
+    return expected;
+  };
+  CHECK_FALSE(objective.is_beyond_bound(through(*most - 1)));
+  CHECK(objective.is_beyond_bound(through(*most + 1)));
 }
 
 TEST_CASE("nothing is made that another map outdoes") {

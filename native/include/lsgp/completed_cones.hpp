@@ -33,6 +33,7 @@ struct CompletionOptions {
   bool symmetric = false;  // as in PlacementOptions; only where no cones are given
   // (m) Which triangles are of charts between seams that get none; empty: every chart may.
   std::vector<char> without;
+  std::optional<int> most;  // as in PlacementOptions
 };
 
 struct CompletedCones {

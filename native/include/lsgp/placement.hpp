@@ -22,6 +22,9 @@ struct PlacementOptions {
   // is unusable, the error or finding says how many are placed without a number. None: the fewest that reach the
   // target.
   std::optional<int> count;
+  // Without a number: where a component would take more cones than these, they are not wanted. Then placement ends with
+  // some more than that, without a map and short of the target.
+  std::optional<int> most;
   double target = 1.05;                  // L2 stretch of the map
   std::optional<Lattice> lattice;        // angles are multiples of its rotation, for a seamless layout
   bool prefer_sharp = false;             // prefer sharp corners to smooth regions if that costs little

@@ -126,8 +126,7 @@ Made SymmetryChoice::through(const CompletedCones& cones, const Progress& progre
 }
 
 Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) {
-  // Of several components some may be better off through these cones, whatever they cost on others.
-  if (surface_.parts.count() == 1 && objective_.bounds_first()) {
+  if (bounds_cones()) {
     const Quality expected = objective_.expected_through(surface_.parts, cones, options_.of_map.mode);
     if (objective_.is_beyond_bound(expected)) {
       beyond_ = expected;
@@ -138,7 +137,8 @@ Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& 
 }
 
 CompletedCones SymmetryChoice::placed(Placing how, const Progress& progress) const {
-  const CompletionOptions completion{given_.count, given_.target, how == Placing::symmetric, given_.without};
+  CompletionOptions completion{given_.count, given_.target, how == Placing::symmetric, given_.without, {}};
+  if (bounds_cones()) completion.most = objective_.most_cones(surface_.parts);
   return complete_cones(surface_.solver, given_.cones, completion, options_, share_of(progress, 0, placing));
 }
 

@@ -30,6 +30,7 @@ Placement place(Solver& solver, const Cones& given, const CompletionRules& rules
   const MapOptions& options = rules.options;
   PlacementOptions placing;
   placing.count = completion.count;
+  placing.most = completion.most;
   placing.target = completion.target;
   placing.symmetric = completion.symmetric;
   if (options.of_map.seamless) placing.lattice = options.of_map.seamless->lattice;

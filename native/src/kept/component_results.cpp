@@ -60,12 +60,12 @@ bool is_same(const ComponentTask& a, const ComponentTask& b) {
 // Images say what is symmetric, strokes are followed by what was placed without regard to them, and what becomes a
 // strip gets no cones by their count.
 bool is_same(const PlacementInput& a, const PlacementInput& b) {
-  const auto& [count, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, border, without_noise,
-               threads] = a.options;
+  const auto& [count, most, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, border,
+               without_noise, threads] = a.options;
   return is_same(a.existing, b.existing) && a.allowed == b.allowed && a.mirrored == b.mirrored &&
-         is_equal(a.directions, b.directions) && count == b.options.count && target == b.options.target &&
-         lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp && seams == b.options.seams &&
-         without_noise == b.options.without_noise;
+         is_equal(a.directions, b.directions) && count == b.options.count && most == b.options.most &&
+         target == b.options.target && lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp &&
+         seams == b.options.seams && without_noise == b.options.without_noise;
 }
 
 template <typename Entry>

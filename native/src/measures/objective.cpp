@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <new>
 #include <tuple>
 #include <utility>
@@ -110,6 +111,12 @@ Quality Objective::expected_through(const SurfaceParts& parts, const CompletedCo
   if (is_measured) out.stretch = 100 * left_of_stretch(mode) * (cones.placement->mapped_l2 - 1);
   if (rival_) out.on_lattice = rival_->on_lattice;
   return out;
+}
+
+std::optional<int> Objective::most_cones(const SurfaceParts& parts) const {
+  const double left = bound() + error_of_estimates - cost(expected_through(parts, {}, Mode::conformal), weights_);
+  if (!(weights_.cones > 0) || !(left / weights_.cones < std::numeric_limits<int>::max())) return {};
+  return static_cast<int>(std::max(left / weights_.cones, 0.0));
 }
 
 bool Objective::is_beyond_bound(const Quality& expected) const {

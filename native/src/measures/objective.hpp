@@ -60,6 +60,9 @@ class Objective {
   // were placed, and during the lifetime of a bound on as good a lattice as its map.
   Quality expected_through(const SurfaceParts& parts, const CompletedCones& cones, Mode mode) const;
 
+  // During that lifetime, the most cones of a map of one component that may cost less than the bound; none: any number.
+  std::optional<int> most_cones(const SurfaceParts& parts) const;
+
   // Whether that is expected to cost more than the bound.
   bool is_beyond_bound(const Quality& expected) const;
 

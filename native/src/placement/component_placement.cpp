@@ -164,6 +164,13 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.cones = chooser.with_given_angles(choice.cones.vertices);
   require_reachable(chooser, choice.cones);
   out.maps = placement.maps();
+  if (chooser.are_too_many(choice.cones.vertices.size())) {
+    out.cones = chooser.with_angles(choice.cones);
+    out.curvature.log_scale = Eigen::VectorXd::Zero(task.mesh.vertex_count());
+    out.mapped_l2 = choice.map.l2;
+    out.reached = false;
+    return out;
+  }
   // If a requested number of cones is refused, the message adds a number that works.
   const auto refuse_with_remedy = [&](auto require) {
     try {

@@ -104,6 +104,11 @@ class ConeChooser {
   const LogScale& scale() const { return scale_; }
   const PlacementTask& task() const { return task_; }
   const PlacementOptions& options() const { return options_; }
+  // Whether so many cones are more than are wanted.
+  template <typename Count>
+  bool are_too_many(Count count) const {
+    return !options_.count && options_.most && count > static_cast<Count>(*options_.most);
+  }
   const PlacementProblem& problem() const { return problem_; }
   ProgressMonitor& monitor() { return monitor_; }
 

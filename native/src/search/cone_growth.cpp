@@ -19,7 +19,7 @@ ConeGrowth::ConeGrowth(ConeChooser& chooser, double reach)
     : chooser_(chooser), reach_(reach), set_(chooser.existing(reach)), best_(chooser.settled(set_)) {}
 
 ConeChoice ConeGrowth::grow_to(double target) {
-  while (best_.predicted_l2 > target && advance(target)) {
+  while (best_.predicted_l2 > target && !chooser_.are_too_many(best_.vertices.size()) && advance(target)) {
   }
   // The latest choice is the best that reaches the target, since growth stops there.
   if (best_.predicted_l2 > target || chooser_.options().lattice || batches_) return best_;
@@ -62,7 +62,7 @@ void ConeGrowth::advance_in_batches(double target) {
   const int before = batches_->cone_count(), most = most_automatic();
   batches_->grow(std::min(most, static_cast<int>(stage_growth * before)));
   const bool has_grown = batches_->cone_count() > before;
-  has_room_ = has_grown && batches_->cone_count() < most;
+  has_room_ = has_grown && batches_->cone_count() < most && !chooser_.are_too_many(batches_->cone_count());
   if (!batches_->feasible()) return;
   if (has_grown) batches_->exchange(1);
   // Rounding the angles cannot lower the stretch.
@@ -112,7 +112,7 @@ ConeChoice AutomaticCones::reach(double target) {
       best = std::move(choice);
       latest_ = i;
     }
-    if (best.predicted_l2 <= target) return best;
+    if (best.predicted_l2 <= target || chooser_.are_too_many(best.vertices.size())) return best;
   }
   missed_ = std::max(missed_, target);
   return best;
