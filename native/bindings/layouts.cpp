@@ -99,6 +99,5 @@ void define_layouts(py::module_& module) {
              "pinned"_a, "progress"_a);
   module.def("usual_margin", &usual_margin, "corner_uv"_a, "island"_a, "tiles"_a);
   module.def("hidden_islands", &hidden_islands, "surface"_a, "island"_a, "progress"_a);
-  module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a,
-             "packed_quickly"_a = py::none());
+  module.def("pack_islands", &pack_islands, "corner_uv"_a, "island"_a, "options"_a, "progress"_a, "packed_quickly"_a);
 }

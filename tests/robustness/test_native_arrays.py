@@ -80,7 +80,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
     "doubled_diagonals": (_lsgp.doubled_diagonals, (POLYGON_TRIANGLES, CORNERS, SIZES, POLYGON_EDGES, 7)),
     "pack_islands": (
         _lsgp.pack_islands,
-        (BALL.positions[BALL.triangles[:4]][:, :, :2], np.array([0, 0, 1, 1], np.int32), PACKING, None),
+        (
+            BALL.positions[BALL.triangles[:4]][:, :, :2],
+            np.array([0, 0, 1, 1], np.int32),
+            PACKING,
+            None,
+            BALL.positions[BALL.triangles[:4]][:, :, 1:],
+        ),
     ),
     "hidden_islands": (_lsgp.hidden_islands, (ARRAYS, np.zeros(len(BALL.triangles), np.int32), None)),
     "usual_margin": (
@@ -229,7 +235,7 @@ def test_an_interrupt_while_an_error_is_made_is_not_lost(monkeypatch: pytest.Mon
     with pytest.raises(KeyboardInterrupt):
         _lsgp.distinct_corners(np.full(11, -1), np.zeros((11, 2)))
     with pytest.raises(KeyboardInterrupt):
-        _lsgp.pack_islands(np.zeros((1, 3, 2)), np.array([7], np.int32), PACKING, None)
+        _lsgp.pack_islands(np.zeros((1, 3, 2)), np.array([7], np.int32), PACKING, None, None)
 
 
 def test_objects_that_were_not_made_are_refused() -> None:

@@ -162,7 +162,7 @@ def pack_islands(
     if groups is not None:
         options["groups"] = _group_numbers(groups, count)
     options["locks"] = _lock_flags(locks, count)
-    return _lsgp.pack_islands(uv, island, options, progress)
+    return _lsgp.pack_islands(uv, island, options, progress, None)
 
 
 def _options(

@@ -247,7 +247,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
     std::optional<double> side_of_quick;  // in the unit of lengths in the search
     if (packed_quickly != nullptr)
-      side_of_quick = root_of_area(scaled, island, {}) / root_of_area(*packed_quickly, island, packed_unit);
+      side_of_quick = root_of_area(corner_uv, island, unit) / root_of_area(*packed_quickly, island, packed_unit);
     const auto found = layout_of(bodies, island, options, packed_unit.back(1), side_of_quick, monitor);
     if (!found) {
       monitor.advance(1);

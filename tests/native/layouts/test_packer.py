@@ -10,6 +10,8 @@ import lsgp
 import numpy as np
 import pytest
 from island_kits import KINDS, Kit, fan, gathered, kit, quads
+from lsgp import _lsgp
+from lsgp.layouts import packing
 from other_process import in_another_process
 from packing_checks import Packed, areas, border, least_gap, measured, overlapping, similarities
 from packing_digest import digest
@@ -63,6 +65,15 @@ def test_gaps_are_as_wide_as_asked_for_and_nothing_overlaps(kind: str, margin: f
         require_room(islands(kind), uv, margin)
         assert uv.min() >= margin - ROUNDING and uv.max() <= 1 - margin + ROUNDING
         assert uv.max() == pytest.approx(1 - margin)  # it fills the square
+
+
+@each_kind
+@pytest.mark.parametrize("effort", EFFORTS)
+def test_a_quick_layout_that_is_known_need_not_be_found_again(kind: str, effort: str) -> None:
+    """As the choice of a map has it, which is measured by one."""
+    options = packing._options(MARGIN, effort=effort)
+    uv = _lsgp.pack_islands(*islands(kind), options, None, packed(kind))
+    assert np.abs(uv - packed(kind, effort=effort)).max() < ROUNDING
 
 
 @each_kind
