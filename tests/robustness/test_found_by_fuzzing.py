@@ -299,3 +299,11 @@ def test_creases_of_a_broken_surface_are_walked_around_once() -> None:
     plain = lsgp.Surface(mesh.positions, mesh.triangles)
     marked = replace(plain, features=lsgp.feature_edges(plain, angle=0.5, borders=True))
     assert lsgp.auto_unwrap(marked, pack="shelves").solved.any()
+
+
+def test_cones_whose_other_angles_have_no_map_at_all_keep_theirs() -> None:
+    """No map has no defects, and was taken for better than one that has some; its angles are missing."""
+    mesh = zoo.member("mixture-seed=84478").mesh()
+    given = lsgp.Surface(mesh.positions, mesh.triangles)
+    placed = lsgp.place_cones(given, count=8, border="strips")
+    assert len(placed.cones) == len(placed.cone_angles)

@@ -43,7 +43,7 @@ constexpr double far_from_target = 2;  // of the stretch above 1: other stages a
 
 // Whether the first choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
-  const auto rank = [](const TriedMap& map) { return map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
+  const auto rank = [](const TriedMap& map) { return map.failed ? 3 : map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.is_valid() ? a.l2 < b.l2 : a.defects() < b.defects();
 }
 
