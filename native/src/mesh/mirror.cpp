@@ -130,7 +130,8 @@ class MirroredSurface {
     for (std::size_t i = 0; i < samples_.size(); i += step) few.push_back(samples_[i]);
     const MirrorPlane first = fitted(plane, few);
     const auto near = std::count_if(few.begin(), few.end(), [&](Index v) { return is_near(first, v); });
-    return step > 1 && near >= hopeful * static_cast<double>(few.size()) ? fitted(first, samples_) : first;
+    return step > 1 && static_cast<double>(near) >= hopeful * static_cast<double>(few.size()) ? fitted(first, samples_)
+                                                                                              : first;
   }
 
  private:
