@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Objects of bound classes, taken only when they were made: from what __new__ alone returns, pybind11 would make one
-// of memory that nobody wrote.
+// Refuses objects of bound classes whose __init__ never ran: for these pybind11 would hand out uninitialized memory.
 #pragma once
 
 #include <pybind11/pybind11.h>

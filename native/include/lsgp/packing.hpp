@@ -57,8 +57,8 @@ struct PackingOptions {
 // The texture coordinates of islands, each moved as a whole by a turn, a translation and a scale, so that they keep
 // their margins.  island: (m) the number of each triangle's island, -1: it does not move. WRONG_PARAMETER, with the
 // triangles of the islands concerned: coordinates that are not finite, margins without room, what does not fit.
-// packed_quickly: what this returns for `quick` and otherwise the same options, with `fill`, so that it need not be
-// found again; null: not known.
+// packed_quickly: the result of the same call with the effort `quick`, if it is known, so that it is not computed
+// again; with `fill`, one tile, and without locks or blocks.
 LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island,
                                const PackingOptions& options = {}, const Progress& progress = {},
                                const CornerUv* packed_quickly = nullptr);

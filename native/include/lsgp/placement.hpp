@@ -22,8 +22,8 @@ struct PlacementOptions {
   // is unusable, the error or finding says how many are placed without a number. None: the fewest that reach the
   // target.
   std::optional<int> count;
-  // Without a number: where a component would take more cones than these, they are not wanted. Then placement ends with
-  // some more than that, without a map and short of the target.
+  // Without `count`: placement on a component stops once it has more cones than this, given ones included, and misses
+  // the target. Then it has no map, and a finding says so.
   std::optional<int> most;
   double target = 1.05;                  // L2 stretch of the map
   std::optional<Lattice> lattice;        // angles are multiples of its rotation, for a seamless layout

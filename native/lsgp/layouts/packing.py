@@ -291,9 +291,14 @@ def laid_out(
         margin = _lsgp.usual_margin(result.corner_uv, result.island, packing.udim or 1)
     pack: Pack = "tight"
     try:
-        how["udim"] = packing.udim
         packed, stacked = _packed(
-            result, packing.stack, margin, **how, packed_quickly=packed_quickly, progress=progress
+            result,
+            packing.stack,
+            margin,
+            udim=packing.udim,
+            **how,
+            packed_quickly=packed_quickly,
+            progress=progress,
         )
         if packing.up is not None and how["turned"] and packing.udim in (None, 1) and packing.stack is None:
             turns = upright_turns(surface, packed.corner_uv, packed.island, packing.up)

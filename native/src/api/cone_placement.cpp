@@ -112,7 +112,8 @@ struct PlacementRules {
 PlacedCones place_alone(const PlacementTask& task, const Positions& directions, const PlacementRules& rules,
                         std::vector<Finding>& findings) {
   PlacedCones found = place_component(task, rules.options, findings, rules.monitor);
-  if (directions.rows() == 0 || !rules.options.lattice || rules.options.count) return found;
+  const bool is_done = found.are_too_many || rules.options.count;
+  if (directions.rows() == 0 || !rules.options.lattice || is_done) return found;
   auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
   return beside ? std::move(*beside) : std::move(found);
 }
@@ -148,7 +149,7 @@ PlacedCones place_on(OfComponent of, const PlacementRules& rules, std::vector<Fi
   const bool has_directions = rules.surface.directions.rows() > 0;
   if (has_directions) of.directions = directions_on(of.component, rules.surface.directions);
   PlacedCones usual = place_usual(of, rules, findings);
-  if (!has_directions) return usual;
+  if (!has_directions || usual.are_too_many) return usual;
   auto toward = turn_toward_strokes(of.task, of.directions, rules.options, usual, rules.monitor);
   return toward ? std::move(*toward) : std::move(usual);
 }
@@ -220,7 +221,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     out.maps += found.maps;
     out.reached &= found.reached;
     if (found.missing) shortfalls.add(*found.missing, component.source_triangle);
-    if (!options.count && !found.reached) {
+    if (!options.count && !found.reached && !found.are_too_many) {
       shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
     if (!shape.is_smoothed()) work.keep_system(component, std::move(found.system));

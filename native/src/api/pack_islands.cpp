@@ -73,9 +73,11 @@ void require_sizes(const PackingOptions& options) {
                                             most_aspect, " times as long as the other, or a smaller margin."));
 }
 
-Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options) {
+// name: of the texture coordinates.
+Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
+                    const char* name = "corner_uv") {
   if (corner_uv.rows() != 3 * ssize(island)) {
-    throw Error(Code::wrong_parameter, concat("There are ", corner_uv.rows(), " texture coordinates of corners; pass ",
+    throw Error(Code::wrong_parameter, concat(name, " has ", corner_uv.rows(), " texture coordinates of corners; pass ",
                                               3 * ssize(island), ", three for each triangle."));
   }
   require_numbers(island, "an island");
@@ -90,7 +92,7 @@ Index require_valid(const CornerUv& corner_uv, const std::vector<Index>& island,
   });
   if (!lost.indices.empty()) {
     throw Error(Code::wrong_parameter,
-                concat("corner_uv is not finite at triangle ", lost.indices[0],
+                concat(name, " is not finite at triangle ", lost.indices[0],
                        ", which lies in an island; give such triangles island -1."),
                 lost);
   }
@@ -229,25 +231,26 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
+  if (packed_quickly != nullptr) {
+    require_valid(*packed_quickly, island, given, "packed_quickly");
+    if (given.effort == PackingEffort::quick) {
+      monitor.advance(1);
+      return *packed_quickly;
+    }
+  }
   const auto [unit, packed_unit, of_outlines] = choose_units(corner_uv, island, given);
   const PackingOptions options = in_unit(given, packed_unit);
   CornerUv scaled = corner_uv;
   for (double& coordinate : scaled.reshaped()) coordinate = std::ldexp(coordinate, -unit.exponent);
   const Array<Body> bodies = bodies_of(scaled, island, options, unit.factor, of_outlines);
   require_locks_inside(bodies, island, options.area.value_or(UvRectangle{}));
-  if (packed_quickly != nullptr) {
-    require_valid(*packed_quickly, island, given);
-    if (given.effort == PackingEffort::quick) {
-      monitor.advance(1);
-      return *packed_quickly;
-    }
-  }
   CornerUv out = corner_uv;
   const auto is_free = [](const Body& body) { return !body.keeps_place; };
   if (std::any_of(bodies.begin(), bodies.end(), is_free)) {
     std::optional<double> side_of_quick;  // in the unit of lengths in the search
     if (packed_quickly != nullptr)
-      side_of_quick = root_of_area(corner_uv, island, unit) / root_of_area(*packed_quickly, island, packed_unit);
+      side_of_quick =
+          root_of_area(scaled, island, {}) / unit.factor / root_of_area(*packed_quickly, island, packed_unit);
     const auto found = layout_of(bodies, island, options, packed_unit.back(1), side_of_quick, monitor);
     if (!found) {
       monitor.advance(1);

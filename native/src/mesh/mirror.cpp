@@ -23,7 +23,7 @@ constexpr double least_matched = 0.98;      // of the vertices of a symmetric su
 constexpr double likely_matched = 0.9;      // of some of them
 constexpr double least_moved = 0.1;         // of the vertices, whose images are others
 constexpr Index most_samples = 500;         // that judge a plane before all vertices do
-constexpr std::size_t first_samples = 100;  // of those, about, that it is fitted to first
+constexpr std::size_t first_samples = 100;  // of those, that it is fitted to first
 constexpr double hopeful = 0.5;             // of the samples, near their images in such a plane: it is fitted to all
 constexpr int most_fits = 20;               // of a plane
 constexpr double operations_a_search = 500;
@@ -125,13 +125,18 @@ class MirroredSurface {
   // Moves a plane to where the images of points are nearest to the surface: of few first and, where many of these are
   // near it then, of all samples.
   MirrorPlane fitted(const MirrorPlane& plane) const {
-    const std::size_t step = std::max<std::size_t>(samples_.size() / first_samples, 1);
+    if (samples_.size() <= first_samples) return fitted(plane, samples_);
+    // By the golden section, since vertices are numbered row by row on a grid.
+    const double section = (std::sqrt(5.0) - 1) / 2;
     Array<Index> few;
-    for (std::size_t i = 0; i < samples_.size(); i += step) few.push_back(samples_[i]);
+    for (std::size_t i = 0; i < first_samples; ++i) {
+      const double place = section * static_cast<double>(i);
+      few.push_back(
+          samples_[static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(samples_.size()))]);
+    }
     const MirrorPlane first = fitted(plane, few);
     const auto near = std::count_if(few.begin(), few.end(), [&](Index v) { return is_near(first, v); });
-    return step > 1 && static_cast<double>(near) >= hopeful * static_cast<double>(few.size()) ? fitted(first, samples_)
-                                                                                              : first;
+    return static_cast<double>(near) < hopeful * first_samples ? first : fitted(first, samples_);
   }
 
  private:

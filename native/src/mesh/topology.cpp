@@ -158,7 +158,7 @@ Orientation orient(const Surface& surface, const PerTriangle<char>& skip, const 
   return out;
 }
 
-// Where triangles with open seams and others meet, more than two of them.
+// Of more than two triangles, some but not all with open seams.
 bool is_partly_open(const EdgeTable& edges, Index edge, const EdgeMarks& marks, const OpenSeams& open_seams) {
   const Index count = edges.halfedge_count(edge);
   if (count < 3 || marks.border[edge] || !marks.seam[edge] || open_seams.empty()) return false;

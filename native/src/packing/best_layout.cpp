@@ -163,7 +163,7 @@ std::optional<PackedLayout> best_layout(const Array<Body>& bodies, const Packing
   for (int effort = side_of_quick ? 1 : 0; effort <= last; ++effort) {
     how[effort].effort = static_cast<PackingEffort>(effort);
     how[effort].seconds.reset();
-    if (effort == last && options.seconds) {
+    if (how[effort].effort == PackingEffort::best && options.seconds) {
       const double left = *options.seconds - std::chrono::duration<double>(Budget::Clock::now() - begin).count();
       if (left <= 0) break;
       how[effort].seconds = left;
@@ -174,7 +174,7 @@ std::optional<PackedLayout> best_layout(const Array<Body>& bodies, const Packing
       LayoutSearch search(bodies, how[effort], unit, monitor);
       if (earlier) search.go_on_from(*earlier);
       PackedLayout found = search.best();
-      if (found.side < side) {
+      if (found.side < (1 - rounding) * side) {
         side = found.side;
         best = std::move(found);
       }

@@ -7,7 +7,7 @@
 #ifdef LSGP_AVX2
 #include <immintrin.h>
 // Microsoft's compiler knows these instructions everywhere.
-#ifdef _MSC_VER
+#if defined(_MSC_VER) && !defined(__clang__)
 #define LSGP_FOR_AVX2
 #else
 #define LSGP_FOR_AVX2 __attribute__((target("avx2")))

@@ -30,8 +30,8 @@ struct PackedLayout {
 
 struct Body {
   Array<Index> islands;  // their numbers
-  Complex low;           // the low corner of its box, as the corners were given
-  Complex origin;        // of the outline, in texture coordinates: the same
+  Complex low;           // the low corner of its box, as given
+  Complex origin;        // of the outline: the same in the unit of lengths
   Outline outline;       // around its origin
   Array<Complex> hull;   // of the outline
   double area = 0;       // of all triangles

@@ -28,6 +28,8 @@ constexpr double largest_cost = 1.25;      // of the given cuts
 constexpr double least_score_gain = 1e-4;  // of the score
 constexpr double most_work = 1e7;          // sides of boundary polygons visited
 constexpr double operations_a_side = 30;   // of a boundary polygon on the raster
+constexpr double sides_a_path = 0.7;       // that take as long as a path when open ones are looked for
+constexpr double least_shared = 1e-6;      // of a cell, that is more than rounding
 
 struct Circle {
   Complex center;
@@ -81,22 +83,24 @@ class Recutter {
     return std::sqrt(share) + any_overlap * share / (share + small_overlap) + weight * (cost / first_cost_ - 1);
   }
   void span();
-  double cost_of(const Array<char>& in_tree) const;
+  double cost_of(const Array<char>& in_tree);
   double measure_overlap();
-  void find_shared_with_others();
+  void find_shared_with_others(const Array<Index>& island);
   void descend(double weight);
   Exchange best_exchange(Index opened, double weight, Array<Index>& moving);
   Array<Index> pieces_behind(Index opened, Index seed) const;
   std::size_t count_sides(const Array<Index>& pieces) const;
   template <typename Visit>
   void for_each_side(Index piece, const Motion& motion, Visit visit);
-  CoverageRaster raster_of(const Array<Index>& pieces);
+  Box frame_around(const Array<Index>& pieces) const;
+  CoverageRaster raster_of(const Array<Index>& pieces) { return raster_of(pieces, frame_around(pieces), cell_); }
+  CoverageRaster raster_of(const Array<Index>& pieces, const Box& frame, double cell);
   // What moved pieces share with those of a raster.  goes_on: whether more than this is of interest.
   template <typename GoesOn>
   double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion, GoesOn goes_on);
 
   const PieceGraph graph_;
-  const double area_;
+  const double area_, cell_;
   PerPart<Array<Index>> paths_of_;  // that lead to other pieces
   PerPart<Circle> circles_;         // around the pieces where they were at first
   State now_;
@@ -107,7 +111,11 @@ class Recutter {
 };
 
 Recutter::Recutter(PieceGraph graph, double area)
-    : graph_(std::move(graph)), area_(area), paths_of_(paths_of_pieces(graph_)) {
+    : graph_(std::move(graph)),
+      area_(area),
+      cell_(std::sqrt(area / cells_of_layout)),
+      paths_of_(paths_of_pieces(graph_)),
+      shared_with_others_(graph_.piece_count(), 0) {
   for (const auto& boundary : graph_.boundary) circles_.push_back(circle_around(boundary));
   now_.motion.resize(graph_.piece_count());
   span();
@@ -134,7 +142,10 @@ void Recutter::span() {
   }
 }
 
-double Recutter::cost_of(const Array<char>& in_tree) const { return cost_of_cuts(graph_, open_paths(graph_, in_tree)); }
+double Recutter::cost_of(const Array<char>& in_tree) {
+  work_ += sides_a_path * static_cast<double>(in_tree.size());
+  return cost_of_cuts(graph_, open_paths(graph_, in_tree));
+}
 
 // The pieces connected to a seed, which is the first, when a path of the tree is opened; if that is `none`, the whole
 // island.
@@ -172,14 +183,18 @@ void Recutter::for_each_side(Index piece, const Motion& motion, Visit visit) {
   checkpoint(operations_a_side * sides);
 }
 
-CoverageRaster Recutter::raster_of(const Array<Index>& pieces) {
+Box Recutter::frame_around(const Array<Index>& pieces) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box frame{infinity, -infinity, infinity, -infinity};
   for (const Index piece : pieces) {
     const Complex z = now_.motion[piece](circles_[piece].center);
     frame = around(frame, box_around(z, circles_[piece].radius));
   }
-  CoverageRaster raster(frame, std::sqrt(area_ / cells_of_layout));
+  return frame;
+}
+
+CoverageRaster Recutter::raster_of(const Array<Index>& pieces, const Box& frame, double cell) {
+  CoverageRaster raster(frame, cell);
   for (const Index piece : pieces) {
     for_each_side(piece, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
   }
@@ -209,23 +224,29 @@ double Recutter::measure_overlap() {
     const Array<Index> island = pieces_behind(none, seed);
     for (const Index piece : island) is_measured[piece] = 1;
     out += raster_of(island).doubly_covered();
+    find_shared_with_others(island);
   }
   return out;
 }
 
-void Recutter::find_shared_with_others() {
-  shared_with_others_.assign(graph_.piece_count(), 0);
-  PerPart<char> is_found(graph_.piece_count(), 0);
-  for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
-    if (is_found[seed]) continue;
-    const Array<Index> island = pieces_behind(none, seed);
-    const CoverageRaster whole = raster_of(island);
-    const auto always = [](double) { return true; };
-    for (const Index piece : island) {
-      is_found[piece] = 1;
-      shared_with_others_[piece] =
-          std::max(shared(whole, {piece}, {}, always) - shared(raster_of({piece}), {piece}, {}, always), 0.0);
-    }
+// On rasters with the same cells, so that the difference is what the others cover of each piece, and 0 of one that no
+// other lies on.
+void Recutter::find_shared_with_others(const Array<Index>& island) {
+  constexpr double most_cells_across = 512;  // fewer than a raster may have
+  const auto always = [](double) { return true; };
+  Box frame = frame_around(island);
+  const double across = std::max(frame.right - frame.left, frame.top - frame.bottom);
+  const double cell = std::max(cell_, across / most_cells_across);
+  const auto on_cells = [cell](Box box) {
+    box.left = cell * std::floor(box.left / cell);
+    box.bottom = cell * std::floor(box.bottom / cell);
+    return box;
+  };
+  const CoverageRaster whole = raster_of(island, on_cells(frame), cell);
+  for (const Index piece : island) {
+    const CoverageRaster alone = raster_of({piece}, on_cells(frame_around({piece})), cell);
+    const double by_others = shared(whole, {piece}, {}, always) - shared(alone, {piece}, {}, always);
+    shared_with_others_[piece] = by_others > least_shared * cell * cell ? by_others : 0;
   }
 }
 
@@ -237,8 +258,10 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
   PerPart<Side> side(graph_.piece_count(), Side::elsewhere);
   for (const Index piece : moving) side[piece] = Side::moving;
   for (const Index piece : resting) side[piece] = Side::resting;
+  // What others cover of these pieces and, if they cover any of them, what rasters with other cells differ by.
   double most_removed = 0;
   for (const Index piece : moving) most_removed += shared_with_others_[piece];
+  if (most_removed > 0) most_removed += small_overlap * area_;
   Exchange best;
   double least = score(now_.overlap, now_.cost, weight) - least_score_gain;
   const auto gains = [&](double overlap, double cost) { return score(overlap, cost, weight) < least; };
@@ -276,7 +299,6 @@ void Recutter::descend(double weight) {
   now_.overlap = measure_overlap();
   now_.cost = cost_of(now_.in_tree);
   is_open_ = open_paths(graph_, now_.in_tree);
-  find_shared_with_others();
   Array<Index> moving;
   const Index count = static_cast<Index>(graph_.paths.size());
   for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried) {
@@ -289,7 +311,7 @@ void Recutter::descend(double weight) {
     now_.overlap = exchange.overlap;
     now_.cost = exchange.cost;
     is_open_ = open_paths(graph_, now_.in_tree);
-    find_shared_with_others();
+    find_shared_with_others(pieces_behind(none, moving.front()));
     tried = 0;
   }
 }

@@ -361,6 +361,9 @@ void require_valid(const PlacementOptions& options) {
   if (options.count && *options.count < 0) {
     throw Error(Code::wrong_parameter, concat("The number of cones is ", *options.count, ". Give 0 or more."));
   }
+  if (options.most && *options.most < 0) {
+    throw Error(Code::wrong_parameter, concat("The most cones are ", *options.most, ". Give 0 or more."));
+  }
   if (!(options.target > 1) || !std::isfinite(options.target)) {
     throw Error(Code::wrong_parameter,
                 concat("The L2 stretch to reach is ", options.target, ". Give a number above 1, which is none."));

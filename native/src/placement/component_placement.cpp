@@ -96,6 +96,7 @@ void require_hope(const VerifiedPlacement& placement, const VerifiedChoice& choi
 std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
                               int& maps) {
   options.count.reset();
+  options.most.reset();
   const ProgressMonitor::Interval interval(monitor, 1, 1);
   ConeChooser chooser(task, options, most_sites(task, options), monitor);
   VerifiedPlacement placement(chooser, monitor);
@@ -164,11 +165,17 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.cones = chooser.with_given_angles(choice.cones.vertices);
   require_reachable(chooser, choice.cones);
   out.maps = placement.maps();
-  if (chooser.are_too_many(choice.cones.vertices.size())) {
+  if (chooser.are_too_many(ssize(choice.cones.vertices))) {
     out.cones = chooser.with_angles(choice.cones);
     out.curvature.log_scale = Eigen::VectorXd::Zero(task.mesh.vertex_count());
-    out.mapped_l2 = choice.map.l2;
+    out.curvature.predicted_l2 = choice.cones.predicted_l2;
+    out.mapped_l2 = std::numeric_limits<double>::infinity();
     out.reached = false;
+    out.are_too_many = true;
+    findings.push_back({Code::placement_not_reached,
+                        concat("This component takes more than the ", *options.most,
+                               " cones that are wanted at most. Allow more of them or a higher stretch."),
+                        {ElementKind::vertices, choice.cones.vertices}});
     return out;
   }
   // If a requested number of cones is refused, the message adds a number that works.

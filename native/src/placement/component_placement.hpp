@@ -21,6 +21,7 @@ struct ConePlacement {
   int maps = 0;          // that were made
   std::optional<MissingCones> missing;
   bool reached = true;
+  bool are_too_many = false;  // more cones than are wanted, without a map
 };
 
 struct PlacedCones : ConePlacement {

@@ -54,6 +54,7 @@ std::optional<PlacedCones> TwinPlacement::place(const Component& component, cons
 
 void TwinPlacement::keep(const Component& component, const PlacementTask& task, const PlacedCones& placed) {
   if (!options_.symmetric || !task.existing.vertices.empty() || placed.cones.vertices.empty()) return;
+  if (placed.are_too_many) return;
   kept_[number(component)] = Kept{placed.cones, placed.mapped_l2};
 }
 

@@ -56,7 +56,7 @@ VerifiedPlacement::VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& moni
 
 VerifiedChoice VerifiedPlacement::place() {
   VerifiedChoice out = place_as_asked();
-  if (has_many() || chooser_.are_too_many(out.cones.vertices.size())) return out;
+  if (has_many() || chooser_.are_too_many(ssize(out.cones.vertices))) return out;
   if (misses(out) && chooser_.has_prices()) {
     chooser_.forget_prices();
     VerifiedChoice anywhere = place_as_asked();
@@ -153,7 +153,7 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   const double target = chooser_.options().target;
   std::optional<AutomaticCones> automatic;
   VerifiedChoice best{choose_where_cheap(automatic), {}};
-  if (chooser_.are_too_many(best.cones.vertices.size())) return best;
+  if (chooser_.are_too_many(ssize(best.cones.vertices))) return best;
   // No additional cone is best if that suffices; corners are next.
   const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
   if (adds_none) best = verified(std::move(best.cones));

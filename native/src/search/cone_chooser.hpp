@@ -105,10 +105,7 @@ class ConeChooser {
   const PlacementTask& task() const { return task_; }
   const PlacementOptions& options() const { return options_; }
   // Whether so many cones are more than are wanted.
-  template <typename Count>
-  bool are_too_many(Count count) const {
-    return !options_.count && options_.most && count > static_cast<Count>(*options_.most);
-  }
+  bool are_too_many(std::ptrdiff_t count) const { return !options_.count && options_.most && count > *options_.most; }
   const PlacementProblem& problem() const { return problem_; }
   ProgressMonitor& monitor() { return monitor_; }
 

@@ -19,7 +19,7 @@ ConeGrowth::ConeGrowth(ConeChooser& chooser, double reach)
     : chooser_(chooser), reach_(reach), set_(chooser.existing(reach)), best_(chooser.settled(set_)) {}
 
 ConeChoice ConeGrowth::grow_to(double target) {
-  while (best_.predicted_l2 > target && !chooser_.are_too_many(best_.vertices.size()) && advance(target)) {
+  while (best_.predicted_l2 > target && !chooser_.are_too_many(ssize(best_.vertices)) && advance(target)) {
   }
   // The latest choice is the best that reaches the target, since growth stops there.
   if (best_.predicted_l2 > target || chooser_.options().lattice || batches_) return best_;
@@ -62,8 +62,12 @@ void ConeGrowth::advance_in_batches(double target) {
   const int before = batches_->cone_count(), most = most_automatic();
   batches_->grow(std::min(most, static_cast<int>(stage_growth * before)));
   const bool has_grown = batches_->cone_count() > before;
-  has_room_ = has_grown && batches_->cone_count() < most && !chooser_.are_too_many(batches_->cone_count());
+  has_room_ = has_grown && batches_->cone_count() < most;
   if (!batches_->feasible()) return;
+  if (chooser_.are_too_many(batches_->cone_count())) {
+    best_ = chooser_.settled(*batches_);
+    return;
+  }
   if (has_grown) batches_->exchange(1);
   // Rounding the angles cannot lower the stretch.
   if (chooser_.options().lattice && has_room_ && chooser_.predicted_l2(*batches_) > target) return;
@@ -112,7 +116,7 @@ ConeChoice AutomaticCones::reach(double target) {
       best = std::move(choice);
       latest_ = i;
     }
-    if (best.predicted_l2 <= target || chooser_.are_too_many(best.vertices.size())) return best;
+    if (best.predicted_l2 <= target || chooser_.are_too_many(ssize(best.vertices))) return best;
   }
   missed_ = std::max(missed_, target);
   return best;

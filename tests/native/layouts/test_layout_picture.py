@@ -202,7 +202,7 @@ def test_pictures_of_all_sizes_look_alike() -> None:
     large, small = (Drawn(mesh, result, size) for size in (1024, 512))
     halved = large.pixels.reshape(512, 2, 512, 2, 3).mean(axis=(1, 3))
     assert np.abs(halved - small.pixels).mean() < 0.02 * 255
-    for drawn in (large, small):  # and are none of paper alone
+    for drawn in (large, small):  # and no triangle's middle is bare paper
         assert not is_close(drawn.at(result.corner_uv.mean(axis=1)), PAPER).any()
 
 

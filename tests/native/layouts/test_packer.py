@@ -71,9 +71,13 @@ def test_gaps_are_as_wide_as_asked_for_and_nothing_overlaps(kind: str, margin: f
 @pytest.mark.parametrize("effort", EFFORTS)
 def test_a_quick_layout_that_is_known_need_not_be_found_again(kind: str, effort: str) -> None:
     """As the choice of a map has it, which is measured by one."""
-    options = packing._options(MARGIN, effort=effort)
-    uv = _lsgp.pack_islands(*islands(kind), options, None, packed(kind))
-    assert np.abs(uv - packed(kind, effort=effort)).max() < ROUNDING
+
+    def packed_from(known: np.ndarray) -> np.ndarray:
+        return _lsgp.pack_islands(*islands(kind), packing._options(MARGIN, effort=effort), None, known)
+
+    assert np.abs(packed_from(packed(kind)) - packed(kind, effort=effort)).max() < ROUNDING
+    larger = 2 * packed(kind)  # than any search finds
+    assert np.array_equal(packed_from(larger), larger)
 
 
 @each_kind
