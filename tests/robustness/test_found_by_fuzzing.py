@@ -18,6 +18,7 @@ from lsgp.io.mesh_obj import read_obj
 from map_checks import codes, surface
 from meshes import Mesh
 from opened_surface import named_by
+from packing_checks import overlapping
 from result_check import undeclared_faults
 
 
@@ -307,3 +308,13 @@ def test_cones_whose_other_angles_have_no_map_at_all_keep_theirs() -> None:
     given = lsgp.Surface(mesh.positions, mesh.triangles)
     placed = lsgp.place_cones(given, count=8, border="strips")
     assert len(placed.cones) == 8 and np.isfinite(placed.cone_angles).all()
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.5])
+def test_islands_on_each_other_are_packed_apart_without_a_margin(shift: float) -> None:
+    """Their outlines do not cross, and no corner is inside another island."""
+    square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+    island = np.repeat(np.arange(3), 2)
+    packed = lsgp.pack_islands(np.concatenate([square + shift * i for i in range(3)]), island, 0)
+    assert len(overlapping(packed, island)) == 0
+    assert len({tuple(packed[island == i].min(axis=(0, 1))) for i in range(3)}) == 3

@@ -23,7 +23,7 @@ constexpr double least_matched = 0.98;      // of the vertices of a symmetric su
 constexpr double likely_matched = 0.9;      // of some of them
 constexpr double least_moved = 0.1;         // of the vertices, whose images are others
 constexpr Index most_samples = 500;         // that judge a plane before all vertices do
-constexpr std::size_t first_samples = 100;  // of those, that it is fitted to first
+constexpr std::size_t first_samples = 100;  // of those, that tell whether it is worth all
 constexpr double hopeful = 0.5;             // of the samples, near their images in such a plane: it is fitted to all
 constexpr int most_fits = 20;               // of a plane
 constexpr double operations_a_search = 500;
@@ -122,8 +122,8 @@ class MirroredSurface {
     return moved >= least_moved * static_cast<double>(images.size());
   }
 
-  // Moves a plane to where the images of points are nearest to the surface: of few first and, where many of these are
-  // near it then, of all samples.
+  // Moves a plane to where the images of samples are nearest to the surface, of few where hardly any of these get near
+  // it by that.
   MirrorPlane fitted(const MirrorPlane& plane) const {
     if (samples_.size() <= first_samples) return fitted(plane, samples_);
     // By the golden section, since vertices are numbered row by row on a grid.
@@ -136,7 +136,7 @@ class MirroredSurface {
     }
     const MirrorPlane first = fitted(plane, few);
     const auto near = std::count_if(few.begin(), few.end(), [&](Index v) { return is_near(first, v); });
-    return static_cast<double>(near) < hopeful * first_samples ? first : fitted(first, samples_);
+    return static_cast<double>(near) < hopeful * first_samples ? first : fitted(plane, samples_);
   }
 
  private:

@@ -83,7 +83,9 @@ std::pair<Index, Index> overlapping_pair(const Array<Outline>& outlines) {
 bool keep_gap(const Array<Outline>& outlines, double gap) {
   const Segments all(outlines);
   return !all.tree(gap / 2).any_meeting_pair([&](Index i, Index j) {
-    return all.owner[i] != all.owner[j] && distance(all.tail[i], all.head[i], all.tail[j], all.head[j]) < gap;
+    if (all.owner[i] == all.owner[j]) return false;
+    const double found = distance(all.tail[i], all.head[i], all.tail[j], all.head[j]);
+    return found < gap || found == 0;  // what touches another outline may lie on what it surrounds
   }) && overlapping_pair(outlines).first < 0;
 }
 

@@ -210,7 +210,7 @@ REVIEWED = {
     ],
     "search/cone_growth.cpp": [
         (
-            "while (best_.predicted_l2 > target && advance(target))",
+            "while (best_.predicted_l2 > target && !chooser_.are_too_many(ssize(best_.vertices)) && advance(target))",
             "each round adds cones, up to the stages or those that Gauss-Bonnet asks for, or ends it",
             WITHIN,
         ),
@@ -498,6 +498,9 @@ REVIEWED = {
         ("while (begin < end)", "words of a row", SHORT),
         ("while (column < end)", "words of a row", SHORT),
     ],
+    "packing/bit_rows.cpp": [
+        ("for (auto crossing = of_row; end - crossing > 1; ++crossing)", "crossings of a row", SHORT),
+    ],
     "packing/construction.cpp": [
         ("for (int row = first_row_; left > 0; ++row)", "rows of the tile: below the last one nothing fits", OWN),
         (
@@ -508,6 +511,7 @@ REVIEWED = {
     ],
     "packing/footprint.cpp": [
         ("while (length >> (level + 1))", "bits of an int", SHORT),
+        ("for (int begin = raster.next(true, row, 0, columns); begin < columns;)", "taken stretches of a row", SHORT),
         ("for (int begin = 0, taken = 0; taken < end; begin = taken)", "free stretches of a row", SHORT),
     ],
     "packing/footprint.hpp": [
