@@ -212,12 +212,11 @@ void require_locks_inside(const Array<Body>& bodies, const std::vector<Index>& i
               triangles_of(island, both));
 }
 
-// side_of_quick: as of best_layout; none: there is no better one.
-std::optional<PackedLayout> layout_of(const Array<Body>& bodies, const std::vector<Index>& island,
-                                      const PackingOptions& options, double unit, std::optional<double> side_of_quick,
-                                      ProgressMonitor& monitor) {
+// What `find` returns; islands that have no room are told by their triangles.
+template <typename Find>
+auto found_with_room(const std::vector<Index>& island, Find find) {
   try {
-    return best_layout(bodies, options, unit, side_of_quick, monitor);
+    return find();
   } catch (const NoRoom& error) {
     throw Error(Code::wrong_parameter, error.message, triangles_of(island, error.islands));
   }
@@ -251,7 +250,9 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
     if (packed_quickly != nullptr)
       side_of_quick =
           root_of_area(scaled, island, {}) / unit.factor / root_of_area(*packed_quickly, island, packed_unit);
-    const auto found = layout_of(bodies, island, options, packed_unit.back(1), side_of_quick, monitor);
+    const double unit_of_options = packed_unit.back(1);
+    const std::optional<PackedLayout> found =
+        found_with_room(island, [&] { return best_layout(bodies, options, unit_of_options, side_of_quick, monitor); });
     if (!found) {
       monitor.advance(1);
       return *packed_quickly;
