@@ -57,7 +57,9 @@ py::dict place_cones_again(lsgp::Solver& solver, const ConeArrays& cones, const 
 lsgp::CompletedCones complete_cones(lsgp::Solver& solver, const ConeArrays& cones, std::optional<int> count,
                                     double target, const py::dict& option_values, const ProgressCallback& progress) {
   const lsgp::Cones given = to_cones(cones);
-  const lsgp::CompletionOptions completion{count, target, false, {}, {}};
+  lsgp::CompletionOptions completion;
+  completion.count = count;
+  completion.target = target;
   const lsgp::MapOptions options = to_map_options(option_values);
   const lsgp::Progress tell = to_progress(progress);
   return without_gil([&] { return lsgp::complete_cones(solver, given, completion, options, tell); });

@@ -167,13 +167,13 @@ def pack_islands(
 
 def _options(
     margin: float,
-    fill: bool = True,
-    turned: Turned = True,
-    udim: int | None = None,
-    effort: Effort = "good",
-    seconds: float | None = None,
-    area: Sequence[float] | None = None,
-    snap: float | None = None,
+    fill: bool,
+    turned: Turned,
+    udim: int | None,
+    effort: Effort,
+    seconds: float | None,
+    area: Sequence[float] | None,
+    snap: float | None,
 ) -> dict[str, Any]:
     """Those of the native function, without groups and locks.  Raises InputError."""
     fills = arguments.flag("fill", fill)
@@ -274,13 +274,13 @@ def laid_out(
     none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
         return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)
-    how: dict[str, Any] = {"turned": turns_of(result)}
-    if packing.effort is not None:
-        how["effort"] = packing.effort
+    how: dict[str, Any] = {"turned": turns_of(result), "effort": packing.effort or "good"}
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)
-        packed, stacked = _packed(scaled, packing.stack, packing.margin, fill=False, **how, progress=progress)
+        packed, stacked = _packed(
+            scaled, packing.stack, packing.margin, fill=False, udim=None, **how, progress=progress
+        )
         outside = outside_findings(packed.corner_uv, result.island)
         said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
         return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), "tight", stacked)
@@ -295,6 +295,7 @@ def laid_out(
             result,
             packing.stack,
             margin,
+            fill=True,
             udim=packing.udim,
             **how,
             packed_quickly=packed_quickly,
@@ -320,11 +321,12 @@ def _packed(
     packed_quickly: FloatArray | None = None,
     **how: Any,
 ) -> tuple[Result, NDArray[np.bool_]]:
-    """The result packed, and the triangles, (m,) bool, that overlap others.  progress, how: as for `pack_islands`.
-    packed_quickly: as of `laid_out`, without stacks."""
+    """The result packed, and the triangles, (m,) bool, that overlap others.  how: fill, turned, udim and effort, these
+    and progress as for `pack_islands`.  packed_quickly: as of `laid_out`, without stacks."""
     uv, island = result.corner_uv, result.island
     if stack is None:
-        packed = _lsgp.pack_islands(uv, island, _options(margin, **how), progress, packed_quickly)
+        options = _options(margin, **how, seconds=None, area=None, snap=None)
+        packed = _lsgp.pack_islands(uv, island, options, progress, packed_quickly)
         return replace(result, corner_uv=packed), np.zeros(len(island), bool)
     stacks = find_stacks(uv, island, mirrored=stack == "mirrored", progress=share_of(progress, 0.0, _STACKING))
     left = np.where(stacks.kept, island, -1).astype(np.int32)

@@ -137,7 +137,11 @@ Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& 
 }
 
 CompletedCones SymmetryChoice::placed(Placing how, const Progress& progress) const {
-  CompletionOptions completion{given_.count, given_.target, how == Placing::symmetric, given_.without, {}};
+  CompletionOptions completion;
+  completion.count = given_.count;
+  completion.target = given_.target;
+  completion.symmetric = how == Placing::symmetric;
+  completion.without = given_.without;
   if (bounds_cones()) completion.most = objective_.most_cones(surface_.parts);
   return complete_cones(surface_.solver, given_.cones, completion, options_, share_of(progress, 0, placing));
 }

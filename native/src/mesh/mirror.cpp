@@ -16,16 +16,18 @@ namespace lsgp {
 
 namespace {
 
-constexpr double tolerance = 0.1;           // mean edge lengths between a vertex and the image of another
-constexpr double near_tolerance = 0.02;     // of the diagonal of the surface's box, between its mirror image and itself
-constexpr double paired_within = 0.5;       // mean edge lengths between a vertex and the image of another, then
-constexpr double least_matched = 0.98;      // of the vertices of a symmetric surface
-constexpr double likely_matched = 0.9;      // of some of them
-constexpr double least_moved = 0.1;         // of the vertices, whose images are others
-constexpr Index most_samples = 500;         // that judge a plane before all vertices do
-constexpr std::size_t first_samples = 100;  // of those, that tell whether it is worth all
-constexpr double hopeful = 0.5;             // of the samples, near their images in such a plane: it is fitted to all
-constexpr int most_fits = 20;               // of a plane
+constexpr double tolerance = 0.1;        // mean edge lengths between a vertex and the image of another
+constexpr double near_tolerance = 0.02;  // of the diagonal of the surface's box, between its mirror image and itself
+constexpr double paired_within = 0.5;    // mean edge lengths between a vertex and the image of another, then
+constexpr double least_matched = 0.98;   // of the vertices of a symmetric surface
+constexpr double likely_matched = 0.9;   // of some of them
+constexpr double least_moved = 0.1;      // of the vertices, whose images are others
+constexpr Index most_samples = 500;      // that judge a plane before all vertices do
+// Of these, so many tell whether a plane is worth fitting to all: half of them have to be near their images, where in a
+// likely plane nine tenths are, give or take three of a hundred.
+constexpr std::size_t first_samples = 100;
+constexpr double hopeful = 0.5;
+constexpr int most_fits = 20;  // of a plane
 constexpr double operations_a_search = 500;
 
 // The distance of a point from a triangle.

@@ -73,7 +73,8 @@ def test_a_quick_layout_that_is_known_need_not_be_found_again(kind: str, effort:
     """As the choice of a map has it, which is measured by one."""
 
     def packed_from(known: np.ndarray) -> np.ndarray:
-        return _lsgp.pack_islands(*islands(kind), packing._options(MARGIN, effort=effort), None, known)
+        options = packing._options(MARGIN, True, True, None, effort, None, None, None)
+        return _lsgp.pack_islands(*islands(kind), options, None, known)
 
     assert np.abs(packed_from(packed(kind)) - packed(kind, effort=effort)).max() < ROUNDING
     larger = 2 * packed(kind)  # than any search finds
