@@ -316,8 +316,11 @@ def choice_lines(choices: Sequence[Choice]) -> list[str]:
     width = max(len(choice.name) for choice in choices)
     lines = ["choices, with what they cost or were expected to, in hundredths of L2 stretch:"]
     for choice in choices:
-        cost = f"about {choice.estimate:5.2f}" if choice.cost is None else f"{choice.cost:11.2f}"
-        lines.append(f"  {'*' if choice.is_best else ' '} {choice.name:{width}}  {cost}  {choice.reason}")
+        if choice.cost is not None:
+            cost = f"{choice.cost:11.2f}"
+        else:
+            cost = f"about {choice.estimate:5.2f}" if math.isfinite(choice.estimate) else ""
+        lines.append(f"  {'*' if choice.is_best else ' '} {choice.name:{width}}  {cost:11}  {choice.reason}")
     return lines
 
 

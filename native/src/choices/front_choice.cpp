@@ -5,10 +5,15 @@
 #include <memory>
 #include <utility>
 
+#include "base/number_text.hpp"
 #include "base/progress_share.hpp"
+#include "base/text.hpp"
 #include "choices/border_choice.hpp"
+#include "choices/border_gain.hpp"
+#include "lsgp/errors.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/edge_set.hpp"
+#include "mesh/topology.hpp"
 
 namespace lsgp {
 
@@ -26,15 +31,28 @@ Made best_of_front(const Made& usual, const VertexPairs& outline, double target,
   const MapOptions& options = usual->options;
   const Pins no_pins;
   const EdgeSet earlier(parts.surface().borders);
+  const auto refuse = [&](const std::string& why) {
+    objective.note_unmade(around_front.name, Objective::infinity, why);
+    return Made();
+  };
   const auto make = [&](const std::shared_ptr<BorderedSurface>& bordered, const Progress& share) {
     const VertexPairs& all = bordered->surface().borders;
     const VertexPairs further = filtered(all, [&](Eigen::Index e) { return !earlier.has(all(e, 0), all(e, 1)); });
     const PerComponent<char> ends = have_edges(parts, further);
     const MapThrough map = maps_of(bordered, no_pins);
     const CompletedCones others = joined(usual->cones, {}, parts.surface(), vertices_on(parts, ends));
-    Made made = map(others, options, share);
+    Made made;
+    try {
+      made = map(others, options, share);
+    } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
+      return refuse(std::string("is refused: ") + name(error.code()));
+    }
     const double stretch = made->result.distortion.l2_stretch;
-    return stretch <= std::max(target, usual->result.distortion.l2_stretch) ? made : nullptr;
+    const double most = std::max(target, usual->result.distortion.l2_stretch);
+    if (stretch <= most) return made;
+    return refuse(concat("is stretched by ", decimals(100 * (stretch - 1), 2), " %, more than ",
+                         decimals(100 * (most - 1), 2), " %"));
   };
   const PerComponent<char> has_tubes = [&] {
     PerComponent<char> out(parts.count(), 0);

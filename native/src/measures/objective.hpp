@@ -72,6 +72,9 @@ class Objective {
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);
 
+  // Adds a map that is not made, or not compared.
+  void note_unmade(const std::string& name, double estimate, const std::string& why);
+
   // Adds the trace of another choice, on a surface that is named.
   void note_all(const std::string& surface, const std::vector<Choice>& others);
 
@@ -104,7 +107,6 @@ class Objective {
     bool is_better_than(const Rank& best) const;
   };
 
-  void note_unmade(const std::string& name, double estimate, const std::string& why);
   double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
 
   const Weights weights_;

@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp.run.report import choice_lines
 from map_checks import pairs, surface
 from meshes import Mesh
 
@@ -67,6 +68,16 @@ def test_only_cuts_in_sight_are_a_reason() -> None:
     assert not len(lsgp.auto_unwrap(facing(nosed), weights=replace(lsgp.Weights(), cuts=0.0)).borders)
     names = [choice.name for choice in lsgp.auto_unwrap(facing(nosed)).choices]
     assert "the front in one piece" in names
+
+
+def test_a_front_that_is_stretched_too_much_is_told() -> None:
+    given = facing(head())
+    result = lsgp.auto_unwrap(given, target=1.015)
+    (refused,) = [choice for choice in result.choices if choice.name == "the front in one piece"]
+    assert not len(result.borders) and refused.cost is None and not refused.is_best
+    assert refused.reason.startswith("is stretched by ")
+    (line,) = [line for line in choice_lines(result.choices) if refused.name in line]
+    assert line.split(refused.name)[1].split() == refused.reason.split()
 
 
 def test_what_is_given_has_precedence() -> None:
