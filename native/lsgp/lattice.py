@@ -132,7 +132,16 @@ def shift_islands(
             "WRONG_PARAMETER",
             f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
         )
-    moved = corner_uv + np.append(shifts, [[0.0, 0.0]], axis=0)[island][:, None, :]
+    with np.errstate(over="ignore"):
+        moved = corner_uv + np.append(shifts, [[0.0, 0.0]], axis=0)[island][:, None, :]
+    largest = float(np.finfo(np.float32).max)
+    outside = np.flatnonzero((island >= 0) & (np.abs(moved) > largest).any(axis=(1, 2)))
+    if len(outside):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"The shift of island {island[outside[0]]} takes triangle {outside[0]} beyond {largest:.3g}, the largest "
+            "number of float32; give smaller shifts.",
+        )
     on_cut = np.isin(triangles.ravel(), cut_edges)
     corners = np.flatnonzero(on_cut & np.repeat(island >= 0, 3))
     flat = moved.reshape(-1, 2)
@@ -160,16 +169,19 @@ def _on_coarser_grid(
         crossings[b].append((a, turn.conjugate()))
 
     # One copy is rounded, the others follow through the cuts they were related by.
-    new = np.full(len(old), np.nan, complex)
+    new = np.empty(len(old), complex)
+    is_placed = np.zeros(len(old), bool)
     for start in range(len(old)):
-        if not np.isnan(new[start]):
+        if is_placed[start]:
             continue
+        is_placed[start] = True
         new[start] = complex(*(np.round(np.array([old[start].real, old[start].imag]) / step) * step))
         waiting = [start]
         while waiting:
             a = waiting.pop()
             for b, turn in crossings[a]:
-                if np.isnan(new[b]):
+                if not is_placed[b]:
+                    is_placed[b] = True
                     new[b] = turn * new[a] + (old[b] - turn * old[a])
                     waiting.append(b)
     return np.stack([new.real, new.imag], axis=1)[copy_of]

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import zoo
 from explorer import places
+from lsgp import lattice
 from lsgp.io.mesh_obj import read_obj
 from map_checks import codes, surface
 from meshes import Mesh
@@ -318,3 +319,12 @@ def test_islands_on_each_other_are_packed_apart_without_a_margin(shift: float) -
     packed = lsgp.pack_islands(np.concatenate([square + shift * i for i in range(3)]), island, 0)
     assert len(overlapping(packed, island)) == 0
     assert len({tuple(packed[island == i].min(axis=(0, 1))) for i in range(3)}) == 3
+
+
+@pytest.mark.parametrize("shift", [1e39, 1.7e308, -1.7e308])
+def test_islands_are_not_shifted_beyond_float32(shift: float) -> None:
+    """Sums were infinite, and rounding both sides of a cut together did not end."""
+    triangles = np.array([[0, 1, 2], [0, 2, 3]])
+    corner_uv = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float) * abs(shift)
+    with pytest.raises(lsgp.InputError, match=r"island 0 takes triangle 0 beyond 3\.4e\+38"):
+        lattice.shift_islands(triangles, corner_uv, np.array([0, 1]), np.array([[0, 2]]), np.full((2, 2), shift))
