@@ -11,6 +11,7 @@
 #include "lsgp/packing.hpp"
 #include "packing/best_layout.hpp"
 #include "packing/body.hpp"
+#include "packing/digits.hpp"
 #include "packing/gaps.hpp"
 #include "packing/layout_search.hpp"
 #include "pipeline/validation.hpp"
@@ -230,6 +231,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
+  require_digits(corner_uv, island, given);
   if (packed_quickly != nullptr) {
     require_valid(*packed_quickly, island, given, "packed_quickly");
     if (given.effort == PackingEffort::quick) {

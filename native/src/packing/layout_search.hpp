@@ -80,8 +80,9 @@ class LayoutSearch {
 
   bool grows() const;
   bool sizes_depend_on_side() const;
-  double inner_width() const { return inside_.right - inside_.left; }
-  double inner_height() const { return inside_.top - inside_.bottom; }
+  // Without an area 1, whatever is lost of it beyond a wide margin.
+  double inner_width() const { return has_area_ ? inside_.right - inside_.left : 1.0; }
+  double inner_height() const { return has_area_ ? inside_.top - inside_.bottom : 1.0; }
   // The side of a square as large as the area at the expected side, in the unit of bodies.
   double expected_extent() const { return expected_side_ * mean_length_; }
   // A length of 1 in texture coordinates, in the unit of bodies.

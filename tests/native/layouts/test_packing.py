@@ -312,6 +312,83 @@ def test_what_an_area_cannot_hold_is_refused_with_its_numbers() -> None:
         lsgp.pack_islands(uv, island, 0, area=(0, 0, 1e7, 1))
 
 
+def told_at_most(message: str) -> float:
+    return float(message.split("at most ")[1].split(",")[0].rstrip("."))
+
+
+def shape_errors(old: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """(m,) of each triangle's sides, relative to the longest one, but for a scale of all."""
+    before, after = (np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2) for uv in (old, new))
+    before, after = before / before.max(), after / after.max()
+    return np.abs(after - before).max(axis=1) / before.max(axis=1)
+
+
+# One step of coordinates that are 2^33 times as large as an island is a part of 2^-20 of it.
+STEP = 2.0**-20
+
+
+@pytest.mark.parametrize(
+    ("margin", "area"),
+    [*((10.0**n, False) for n in (8, 10, 17, 154, 300, 308)), *((10.0**n, True) for n in (8, 17, 90))],
+)
+@pytest.mark.parametrize("count", [1, 7, 30])
+def test_a_margin_beside_which_islands_have_no_digits_is_refused(count: int, area: bool, margin: float) -> None:
+    """Such islands collapsed; a margin that is told instead fits."""
+    uv, island = squares(count, 1.0)
+    uv[island == 0] *= 1e-3
+    how = {"fill": False, "effort": "quick"} | ({"area": (0, 0, 16 * margin, 16 * margin)} if area else {})
+    with pytest.raises(lsgp.InputError, match="The margin is .*, so large that numbers are too far apart") as caught:
+        lsgp.pack_islands(uv, island, margin, **how)
+    told = told_at_most(caught.value.message)
+    assert told < margin
+    packed = lsgp.pack_islands(uv, island, told, **how)
+    assert shape_errors(uv, packed).max() < 2 * STEP
+    # It is not told much less than what would do.
+    assert packed.max() > 2.0**29 * 1e-3
+
+
+@pytest.mark.parametrize("how", [{"fill": True}, {"fill": False, "margin": 0.1}, {"locks": {"scale": [1]}}])
+@pytest.mark.parametrize("place", [(1e17, 0), (-1e17, 3), (5, -1e60), (1e90, 1e90)])
+def test_an_area_where_islands_have_no_digits_is_refused(place: tuple[float, float], how: dict) -> None:
+    uv, island = squares(3, 1.0)
+    size = max(64.0, 2.0**-40 * max(np.abs(place)))
+
+    def packed(x: float, y: float) -> np.ndarray:
+        return lsgp.pack_islands(uv, island, area=(x, y, x + size, y + size), effort="quick", **how)
+
+    with pytest.raises(lsgp.InputError, match="so far from the origin that numbers there are too far apart") as caught:
+        packed(*place)
+    told = told_at_most(caught.value.message)
+    assert told < max(np.abs(place))
+    assert np.array_equal(np.isfinite(packed(told, -told)), np.full(uv.shape, True))
+    if "locks" not in how:
+        assert shape_errors(uv, packed(told, -told)).max() < 2 * STEP
+
+
+def test_an_area_may_be_as_large_as_it_will() -> None:
+    """Islands lie in its low corner, or fill it."""
+    uv, island = squares(4, 1.0)
+    for side in (1e17, 1e150):
+        for fill in (True, False):
+            packed = lsgp.pack_islands(uv, island, 0.1, fill=fill, area=(0, 0, side, side), effort="quick")
+            assert shape_errors(uv, packed).max() < 1e-9
+
+
+def test_islands_that_are_specks_beside_others_are_packed_with_them() -> None:
+    uv, island = squares(4, 1.0)
+    uv[island == 1] *= 1e-12
+    for how in ({"fill": True}, {"fill": False}, {"fill": False, "area": (1, 1, 20, 20)}, {"locks": {"scale": [1]}}):
+        packed = lsgp.pack_islands(uv, island, effort="quick", **how)
+        assert np.isfinite(packed).all()
+
+
+@pytest.mark.parametrize("snap", [1e6, 1e17, 1e200, 1e308])
+def test_blocks_larger_than_all_islands_are_refused_with_the_room_there_is(snap: float) -> None:
+    uv, island = squares(4, 1.0)
+    with pytest.raises(lsgp.InputError, match=r"snap is .*, and the area inside the margins is [1-9]\S* by [1-9]"):
+        lsgp.pack_islands(uv, island, fill=False, snap=snap)
+
+
 def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along() -> None:
     uv, island = squares(4)
     line = [[[9.0, 0.0], [9.1, 0.0], [9.05, 0.0]], [[9.0, 1.0], [9.0, 1.0], [9.0, 1.0]]]
