@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csgraph
 
 SAME_LENGTH = 1e-6  # relative: sides of a cut
+SAME_TURN = 1e-9
 NO_HEIGHT = 1e-9  # over the length of a side: such a triangle bends no way
 FOLDED = 3 * np.pi / 4  # radians of bending
 
@@ -97,15 +98,23 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     # Triangles without a map count: with them more than two may meet.
     everyone = surface.triangles[single]
     keys, meeting = np.unique(edge_keys(everyone.ravel(), everyone[:, [1, 2, 0]].ravel()), return_counts=True)
-    borders, crowded = _borders_inside(surface, result, options), keys[meeting > 2]
+    parts = lsgp.build_ledger(surface, result.cones, result.cone_angles, options)
+    crowded = keys[meeting > 2]
+    ends = np.isin(key, edge_keys(*surface.borders.T))
+    ends |= np.isin(key, edge_keys(*surface.seams.T)) & np.repeat(
+        _is_opened(surface, result, options, parts)[triangle], 3
+    )
     by_edge = np.argsort(key, kind="stable")
     first, count = np.unique(key[by_edge], return_index=True, return_counts=True)[1:]
     one, other = by_edge[first[count == 2]], by_edge[first[count == 2] + 1]
-    glued = (tail[one] == head[other]) & ~np.isin(key[one], np.union1d(borders, crowded))
+    glued = (tail[one] == head[other]) & ~np.isin(key[one], crowded) & ~ends[one] & ~ends[other]
     z = (uv[..., 0] + 1j * uv[..., 1]).ravel()
-    inside = np.flatnonzero(np.isin(key, crowded) & ~np.isin(key, borders))
-    part = _parts(surface, result, options)[triangle]
-    running_on = _running_on(surface, result, inside, vertex, z, part)
+    inside = np.isin(key, crowded)
+    part = np.full(len(surface.triangles), -1)  # of each triangle, as the library tells it; -1: in none
+    for number, one_part in enumerate(parts):
+        part[one_part.triangles] = number
+    part = part[triangle]
+    running_on = _running_on(surface, result, np.flatnonzero(inside & ~ends), key[inside & ends], vertex, z, part)
     one, other = np.concatenate([one[glued], running_on[:, 0]]), np.concatenate([other[glued], running_on[:, 1]])
     twin = np.full(len(h), -1)
     twin[one], twin[other] = other, one
@@ -121,16 +130,20 @@ def _running_on(
     surface: lsgp.Surface,
     result: lsgp.Result,
     h: NDArray[np.int64],
+    ended: NDArray[np.int64],
     vertex: NDArray[np.int64],
     z: NDArray[np.complex128],
     part: NDArray[np.int64],
 ) -> NDArray[np.int64]:
     """(p, 2) Which of the halfedges h, at edges of three or more triangles, are two sides of one sheet.
 
+    ended: the keys of their edges, once for each further side, at which the surface ends.
+
     Seen from the map: two sides with the same coordinates.  What the map cuts there it lists, once for each sheet: of
     the sides left, two of one part and of the same length, as sides of a cut have, and of several such, those that bend
-    least.  An edge that is marked is listed once more if two sides or more end there: it tells nothing of folds."""
-    cuts = Counter(edge_keys(*result.cut_edges.T).tolist())
+    least.  An edge that is marked is listed once more if two sides or more end there: it tells nothing of folds, but of
+    those whose sides are a turn of a seamless layout apart, as sides that end are not."""
+    cuts, ends = Counter(edge_keys(*result.cut_edges.T).tolist()), Counter(ended.tolist())
     by_edge: dict[int, list[int]] = {}
     for side, key in zip(h.tolist(), edge_keys(vertex[h], vertex[next_corner(h)]).tolist(), strict=True):
         by_edge.setdefault(key, []).append(side)
@@ -150,6 +163,12 @@ def _running_on(
             return np.pi / 2
         return float(np.arctan2(np.linalg.norm(np.cross(*normals)), -normals[0] @ normals[1]))
 
+    def turned(a: int, b: int) -> bool:
+        if result.seamless is None:
+            return False
+        ratio = (z[a] - z[ahead[a]]) / (z[ahead[b]] - z[b])
+        return bool(abs(ratio**result.seamless.rotation_order - 1) < SAME_TURN)
+
     marked = set(edge_keys(*surface.seams.T).tolist())
     pairs: list[tuple[int, int]] = []
     for key, sides in by_edge.items():
@@ -159,8 +178,8 @@ def _running_on(
         taken: set[int] = set()
         cut = cuts[key]
         if key in marked:
-            apart = [pair for pair in apart if not differ(*pair) and bend(*pair) < FOLDED]
-            cut -= len(sides) - 2 * (len(together) + cut) >= 2
+            apart = [pair for pair in apart if not differ(*pair) and (bend(*pair) < FOLDED or turned(*pair))]
+            cut -= ends[key] + len(sides) - 2 * (len(together) + cut) >= 2
         for candidates, most in ((together, len(together)), (apart, cut)):
             for pair in candidates:
                 if most > 0 and taken.isdisjoint(pair):
@@ -170,18 +189,12 @@ def _running_on(
     return np.array(pairs, np.int64).reshape(-1, 2)
 
 
-def _parts(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
-    """The number of each triangle's part as the library tells it, -1 of those in none."""
-    out = np.full(len(surface.triangles), -1)
-    for number, part in enumerate(lsgp.build_ledger(surface, result.cones, result.cone_angles, options)):
-        out[part.triangles] = number
+def _is_opened(
+    surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options, parts: list[lsgp.LedgerPart]
+) -> NDArray[np.bool_]:
+    """(m,) the triangles whose seams are where their surface ends, and no cuts."""
+    out = np.full(len(surface.triangles), options.seams == "boundary")
+    out[named_by(result, "SEAMS_OPENED")] = True
+    for part in parts if options.seams == "exact" else []:  # which opens components without cones, and says nothing
+        out[part.triangles] = not len(part.cones)
     return out
-
-
-def _borders_inside(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
-    """The keys of the edges that are open and no cuts: borders, and seams that are such."""
-    borders, keys = edge_keys(*surface.borders.T), edge_keys(*surface.seams.T)
-    if options.seams == "boundary" or (options.seams == "exact" and not len(result.cones)):
-        return np.union1d(borders, keys)
-    opened = surface.triangles[named_by(result, "SEAMS_OPENED")]
-    return np.union1d(borders, np.intersect1d(keys, edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel())))

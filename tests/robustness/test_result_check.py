@@ -10,6 +10,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+import zoo
 from map_checks import surface, unwrap
 from result_check import undeclared_faults
 
@@ -174,6 +175,27 @@ TILED = {
 }
 SEAMLESS = {lattice: unwrap(MESH, seamless=options.seamless) for lattice, options in TILED.items()}
 TORUS = meshes.torus(14, 8)
+
+
+# Of edges of three or more triangles: sheets that fold at a seam, and those of which some are opened along their seams.
+@pytest.mark.parametrize("seams", ["follow", "exact"])
+@pytest.mark.parametrize("seamless", [None, lsgp.Seamless()], ids=["", "seamless"])
+@pytest.mark.parametrize("marked", ["all", "crowded"])
+@pytest.mark.parametrize("seed", [7, 48, 60, 362])
+def test_sound_maps_of_sheets_that_meet_at_seams_pass(
+    seed: int, marked: str, seamless: lsgp.Seamless | None, seams: str
+) -> None:
+    mesh = zoo.member(f"mixture-seed={seed}").mesh()
+    sides = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, count = np.unique(sides, axis=0, return_counts=True)
+    given = lsgp.Surface(mesh.positions, mesh.triangles, seams=edges[count > (0 if marked == "all" else 2)])
+    placed, options = lsgp.place_cones(given), lsgp.Options(seamless=seamless, seams=seams)
+    try:
+        result = lsgp.parameterize(given, placed.cones, None if seamless else placed.cone_angles, options)
+    except lsgp.TopologyError as error:
+        assert (seams, error.code) == ("exact", "SEAMS_INCOMPLETE")
+        return
+    assert undeclared_faults(given, result, options) == []
 
 
 @pytest.mark.parametrize("lattice", TILED)
