@@ -31,6 +31,7 @@ _ROUNDING = 1e-12
 # Units in the last place of single precision that an island of some shape spans: less than half a texel of the largest
 # textures, 65536, at the far end of the square.
 _LEAST_UNITS = 100
+_TINY = "ISLANDS_TINY"
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +137,8 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
 
     Without `layout.udim` the layout keeps its arrangement and its corner at the origin; if it is larger than the
     square, ISLANDS_OUTSIDE is among the warnings. With it, islands lie in rows in tiles 1001, 1002, ..., without
-    rotation.
+    rotation. ISLANDS_TINY names islands that do not keep their shape in single precision, as at a low density beside
+    wide margins.
     Raises InputError: WRONG_PARAMETER, also for seamless layouts, whose size is given by their tiles; ISLAND_TOO_LARGE
     if one does not fit a tile; TOO_FEW_TILES.
     """
@@ -151,12 +153,13 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     if not np.isfinite(extent):
         arguments.refuse("density", layout.density, "pass fewer texels per unit, which is more than numbers can hold")
     if layout.udim is None:
-        return replace(result, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)])
+        outside = outside_findings(uv, result.island)
+        return with_tiny_findings(replace(result, corner_uv=uv, warnings=[*result.warnings, *outside]))
     boxes = island_boxes(uv, result.island)
     shifts = _tile_places(boxes, result.island, layout)
     solved = result.island >= 0
     uv[solved] += shifts[result.island[solved], None]
-    return replace(result, corner_uv=uv)
+    return with_tiny_findings(replace(result, corner_uv=uv))
 
 
 def _of_unit_size(surface: Surface) -> tuple[float, Surface]:
@@ -261,8 +264,9 @@ def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
 
 
 def with_tiny_findings(result: Result) -> Result:
-    """A result whose layout is final, with the warning of tiny islands, where there are any."""
-    return replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+    """A result that warns of the islands that are tiny in its layout, and no longer of others."""
+    others = [finding for finding in result.warnings if finding.code != _TINY]
+    return replace(result, warnings=[*others, *tiny_findings(result.corner_uv, result.island)])
 
 
 def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
@@ -275,7 +279,7 @@ def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
         "coordinates are stored in single precision, as in most files and programs. Unwrap these parts separately, or "
         "delete them if they are debris."
     )
-    return [Finding("ISLANDS_TINY", message, _triangles_of(tiny, island))]
+    return [Finding(_TINY, message, _triangles_of(tiny, island))]
 
 
 def _of_islands(count: int, total: int) -> str:

@@ -337,7 +337,7 @@ def test_a_margin_beside_which_islands_have_no_digits_is_refused(count: int, are
     uv, island = squares(count, 1.0)
     uv[island == 0] *= 1e-3
     how = {"fill": False, "effort": "quick"} | ({"area": (0, 0, 16 * margin, 16 * margin)} if area else {})
-    with pytest.raises(lsgp.InputError, match="The margin is .*, so large that numbers are too far apart") as caught:
+    with pytest.raises(lsgp.InputError, match=r"The margin is .*, so large that numbers are too far apart") as caught:
         lsgp.pack_islands(uv, island, margin, **how)
     told = told_at_most(caught.value.message)
     assert told < margin

@@ -50,3 +50,15 @@ def test_islands_that_single_precision_spoils_are_named(few_tries, shape: str, e
         assert set(range(of_ball, len(result.island))) == set(named) and spoiled(result).any()
     else:
         assert not said
+
+
+@pytest.mark.parametrize("density", [1.0, 1e-10, 1e-30])
+def test_a_density_at_which_islands_collapse_beside_margins_names_them(density: float) -> None:
+    box = surface(meshes.cube(2))
+    result = lsgp.auto_unwrap(box, pack="shelves")
+    placed = lsgp.at_texel_density(box, result, TexelLayout(density, 1024, 4))
+    named = [finding.elements.indices.tolist() for finding in placed.warnings if finding.code == "ISLANDS_TINY"]
+    assert named == ([] if density == 1 else [list(range(len(result.island)))])
+    assert density < 1 or not spoiled(placed).any()
+    # Without margins all coordinates are as small.
+    assert lsgp.at_texel_density(box, result, TexelLayout(density, 1024)).warnings == result.warnings
