@@ -158,24 +158,13 @@ Orientation orient(const Surface& surface, const PerTriangle<char>& skip, const 
   return out;
 }
 
-// Of more than two triangles, some but not all with open seams.
-bool is_partly_open(const EdgeTable& edges, Index edge, const EdgeMarks& marks, const OpenSeams& open_seams) {
-  const Index count = edges.halfedge_count(edge);
-  if (count < 3 || marks.border[edge] || !marks.seam[edge] || open_seams.empty()) return false;
-  Index open = 0;
-  for (Index i = 0; i < count; ++i) open += open_seams[edges.halfedge(edge, i) / 3] != 0;
-  return open > 0 && open < count;
-}
-
 // The twin of every halfedge across which the surface continues, none at others: at edges of two triangles that
-// are not open, and at those of more triangles as sheets run on, of which some may be open.
-PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks,
-                                  const OpenSeams& open_seams, const PerTriangle<char>& skip) {
+// are not open, and at those of more triangles that are not as sheets run on.
+PerHalfedge<Index> join_sheets(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks,
+                               const OpenSeams& open_seams, const PerTriangle<char>& skip) {
   PerHalfedge<Index> twin(3 * surface.triangles.rows(), none);
   PerEdge<char> crowded;
-  Array<Index> partly_open;
   for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (is_partly_open(edges, edge, marks, open_seams)) partly_open.push_back(edge);
     if (edges.halfedge_count(edge) < 2 || is_open(edges, edge, marks, open_seams)) continue;
     if (edges.halfedge_count(edge) == 2) {
       const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
@@ -190,13 +179,42 @@ PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges
     const Orientation parts = orient(surface, skip, twin);
     continue_sheets(surface, edges, crowded, {parts.component, parts.reversed, parts.orientable}, twin);
   }
-  if (partly_open.empty()) return twin;
-  // What is not open runs on as if nothing were.
-  const PerHalfedge<Index> unopened = join_halfedges(surface, edges, marks, {}, skip);
-  for (const Index edge : partly_open) {
+  return twin;
+}
+
+// Joins triangles of one-sided parts at edges of three or more triangles: as sheets run on once their seams are open.
+void join_one_sided(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks, const OpenSeams& open_seams,
+                    const PerTriangle<char>& skip, PerHalfedge<Index>& twin) {
+  const Orientation parts = orient(surface, skip, twin);
+  if (std::all_of(parts.orientable.begin(), parts.orientable.end(), [](char is) { return is != 0; })) return;
+  const auto is_one_sided = [&](Index h) {
+    return parts.component[h / 3] != none && !parts.orientable[parts.component[h / 3]];
+  };
+  const PerHalfedge<Index> opened = join_sheets(surface, edges, marks, open_seams, skip);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) < 3) continue;
     for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
-      const Index h = edges.halfedge(edge, i), other = unopened[h];
-      if (other != none && !open_seams[h / 3] && !open_seams[other / 3]) twin[h] = other;
+      const Index h = edges.halfedge(edge, i), other = opened[h];
+      if (other != none && is_one_sided(h) && is_one_sided(other)) twin[h] = other;
+    }
+  }
+}
+
+// As sheets run on where nothing is open, so that a part hangs on no seam of another, without what is open.
+PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks,
+                                  const OpenSeams& open_seams, const PerTriangle<char>& skip) {
+  PerHalfedge<Index> twin = join_sheets(surface, edges, marks, {}, skip);
+  if (open_seams.empty()) return twin;
+  bool any_crowded = false;
+  for (Index edge = 0; edge < edges.count() && !any_crowded; ++edge) any_crowded = edges.halfedge_count(edge) > 2;
+  if (any_crowded) join_one_sided(surface, edges, marks, open_seams, skip, twin);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (!marks.seam[edge]) continue;
+    for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
+      const Index h = edges.halfedge(edge, i), other = twin[h];
+      if (other == none || !(open_seams[h / 3] || open_seams[other / 3])) continue;
+      twin[h] = none;
+      twin[other] = none;
     }
   }
   return twin;

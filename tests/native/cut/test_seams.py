@@ -8,6 +8,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+import zoo
 from map_checks import assert_angles_met, assert_exact_transitions, codes, only, pairs, surface, unwrap
 from result_check import undeclared_faults
 from segmentations import glue
@@ -321,3 +322,25 @@ def test_fins_that_open_along_their_seams_leave_the_seams_of_a_body_with_cones_j
     lengths = [np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2) for uv in (of_ball, alone.corner_uv)]
     assert lengths[0] == pytest.approx(lengths[1] * (lengths[0].sum() / lengths[1].sum()), rel=1e-9)
     assert undeclared_faults(whole, found) == []
+
+
+@pytest.mark.parametrize("seed", [1706, 1818, 1989, 2074, 2446])
+def test_a_part_with_cones_ends_nowhere_else_where_others_open_along_their_seams(seed: int) -> None:
+    """Parts touch at edges of three or more triangles, some of them marked, others not; which sheets run on at the
+    others was decided anew once seams were open."""
+    mesh = zoo.member(f"mixture-seed={seed}").mesh()
+    sides = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, count = np.unique(sides, axis=0, return_counts=True)
+    plain = lsgp.Surface(mesh.positions, mesh.triangles)
+    random = np.random.default_rng(seed)
+
+    def with_cones(given: lsgp.Surface, cones: np.ndarray) -> list[tuple[list[int], int, int]]:
+        parts = lsgp.build_ledger(given, cones, None)
+        return [(part.triangles.tolist(), part.euler, part.borders) for part in parts if len(part.cones)]
+
+    for part in lsgp.build_ledger(plain, [], None):
+        own = np.setdiff1d(mesh.triangles[part.triangles], np.delete(mesh.triangles, part.triangles, axis=0))
+        for share in (0.1, 0.5, 0.5, 0.5) if len(own) else ():
+            is_marked = random.random(len(edges)) < np.where(count > 2, 0.5, share)
+            marked = lsgp.Surface(mesh.positions, mesh.triangles, seams=edges[is_marked])
+            assert with_cones(marked, own[:3]) == with_cones(plain, own[:3])
