@@ -328,3 +328,18 @@ def test_islands_are_not_shifted_beyond_float32(shift: float) -> None:
     corner_uv = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float) * abs(shift)
     with pytest.raises(lsgp.InputError, match=r"island 0 takes triangle 0 beyond 3\.4e\+38"):
         lattice.shift_islands(triangles, corner_uv, np.array([0, 1]), np.array([[0, 2]]), np.full((2, 2), shift))
+
+
+@pytest.mark.parametrize("far", [0.0, 1e8, -1e10])
+def test_a_layout_that_lies_far_away_stays_inside_the_margin(far: float) -> None:
+    """Kept as it was given, an island was as wide as the digits of its place could tell."""
+    around = np.linspace(0, 2 * np.pi, 33)
+    outer, inner = (radius * np.stack([np.cos(around), np.sin(around)], axis=1) for radius in (0.8, 0.7))
+    ring = np.concatenate(
+        [
+            np.stack([outer[:-1], outer[1:], inner[:-1]], axis=1),
+            np.stack([outer[1:], inner[1:], inner[:-1]], axis=1),
+        ]
+    )
+    packed = lsgp.pack_islands(ring + far, np.zeros(len(ring), int), 0.01, effort="quick", turned=False)
+    assert packed.min() >= 0.01 - 1e-12 and packed.max() <= 0.99 + 1e-9

@@ -48,8 +48,9 @@ class Given {
     }
     is_fixed_ = has_obstacles || options.snap > 0 || (options.fill && has_own_scales);
     inside_ = inside_margins(options, options.fill || has_obstacles || options.tiles > 1 || options.area.has_value());
+    if (!is_fixed_ && options.tiles == 1) from_ = lowest_origin();
     for (const Body& body : bodies) {
-      const Outline outline = body.outline.moved(1, body.origin);
+      const Outline outline = body.outline.moved(1, body.origin - from_);
       tile_.push_back(body.keeps_place ? 0 : tile_of(outline.box()));
       if (tile_.back() < 0) return;
       outlines_.push_back(outline);
@@ -84,8 +85,8 @@ class Given {
       if (bodies_[b].keeps_place) continue;
       const Box& box = boxes_[tile_[b]];
       const Complex low(box.left, box.bottom), corner(inside_.left, inside_.bottom);
-      const Complex shift =
-          is_fixed_ ? bodies_[b].origin - corner_of_tile(tile_[b]) : (bodies_[b].origin - low) / unit() + corner;
+      const Complex shift = is_fixed_ ? bodies_[b].origin - corner_of_tile(tile_[b])
+                                      : (bodies_[b].origin - from_ - low) / unit() + corner;
       out.motions[b] = {tile_[b], 1 / unit(), shift};
     }
     return out;
@@ -93,6 +94,16 @@ class Given {
 
  private:
   double unit() const { return options_.fill ? side_ : 1.0; }
+
+  Complex lowest_origin() const {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    double left = most, bottom = most;
+    for (const Body& body : bodies_) {
+      left = std::min(left, body.origin.real());
+      bottom = std::min(bottom, body.origin.imag());
+    }
+    return {left, bottom};
+  }
 
   // -1: it is in none.
   int tile_of(const Box& box) const {
@@ -140,6 +151,7 @@ class Given {
   const PackingOptions& options_;
   UvRectangle inside_;
   bool is_fixed_ = false;    // nothing can be scaled
+  Complex from_ = 0;         // where outlines lie from, so that they keep their digits far from the origin
   Array<Outline> outlines_;  // (bodies) where they lie
   Array<int> tile_;          // (bodies)
   Array<Box> boxes_;         // (tiles) around bodies
