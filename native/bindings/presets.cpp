@@ -95,6 +95,7 @@ py::dict auto_unwrap(const SurfaceArrays& surface_arrays, const ConeArrays& cone
 
 void define_presets(py::module_& module) {
   using py::literals::operator""_a;
+  module.def("least_inside", [] { return lsgp::AutoUnwrapOptions::least_inside; });
   module.def("preset", &preset, "name"_a);
   module.def("auto_unwrap", &auto_unwrap, "surface"_a, "cones"_a, "sharp"_a, "options"_a, "pins"_a, "progress"_a);
 }

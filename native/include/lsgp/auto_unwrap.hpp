@@ -89,7 +89,9 @@ struct AutoUnwrapOptions {
   std::optional<PackingEffort> effort;  // none: that of the preset
   std::optional<double> margin;         // none: usual_margin
   // Of packed islands that nothing outside can see, as by hidden_islands: their texel density relative to that of the
-  // others, 0.01 to 1. Without effect where islands are not packed.
+  // others, from the least, below which coordinates have no digits left for them, to 1. Without effect where islands
+  // are not packed.
+  static constexpr double least_inside = 0.01;
   std::optional<double> inside;
   // After so many the best map made until then is the result, and TIME_LIMIT says so.
   std::optional<double> seconds;

@@ -16,7 +16,7 @@ from ..lattice import island_boxes
 from ..results import Result
 from ..surface import Surface, surface_arrays
 
-LEAST_SHARE = 0.01  # of the others' texel density: with far less, coordinates have no digits left for the islands
+LEAST_SHARE: float = _lsgp.least_inside()  # of the others' texel density
 
 
 def find_hidden(surface: Surface, island: IndexArray, progress: Progress | None = None) -> NDArray[np.bool_]:

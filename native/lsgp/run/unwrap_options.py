@@ -462,7 +462,7 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         metavar="F",
         type=_inside_option,
         help="in tight layouts, texel density of islands that nothing outside can see, relative to that of the others, "
-        "for instance 0.25; 0.01 to 1 (default: the same)",
+        f"for instance 0.25; {LEAST_SHARE} to 1 (default: the same)",
     )
     unwrap.add_argument(
         "--effort",

@@ -30,9 +30,6 @@ namespace lsgp {
 
 namespace {
 
-// Of the texel density of other islands: with far less, coordinates have no digits left for those inside.
-constexpr double least_inside = 0.01;
-
 void require_valid(const Weights& weights, const AutoUnwrapOptions& options) {
   const std::array named{std::pair("islands", weights.islands),  std::pair("cuts", weights.cuts),
                          std::pair("borders", weights.borders),  std::pair("cones", weights.cones),
@@ -47,9 +44,9 @@ void require_valid(const Weights& weights, const AutoUnwrapOptions& options) {
   if (!std::isfinite(target) || target <= 1) {
     throw Error(Code::wrong_parameter, concat("target is ", target, "; pass an L2 stretch, a finite number above 1."));
   }
-  if (options.inside && !(*options.inside >= least_inside && *options.inside <= 1)) {
-    throw Error(Code::wrong_parameter,
-                concat("inside is ", *options.inside, "; pass a number from ", least_inside, " to 1."));
+  if (options.inside && !(*options.inside >= AutoUnwrapOptions::least_inside && *options.inside <= 1)) {
+    throw Error(Code::wrong_parameter, concat("inside is ", *options.inside, "; pass a number from ",
+                                              AutoUnwrapOptions::least_inside, " to 1."));
   }
   if (options.seconds && !(*options.seconds > 0)) {
     throw Error(Code::wrong_parameter, concat("seconds is ", *options.seconds, "; pass a positive number."));

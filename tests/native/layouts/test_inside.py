@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 import lsgp
 import meshes
 import numpy as np
 import pytest
 from layout_check import coverage, overlapping_islands
-from lsgp.layouts.inside import find_hidden
+from lsgp.layouts.inside import LEAST_SHARE, find_hidden
 
 BALL = meshes.bumpy_sphere(2)
 
@@ -137,3 +140,15 @@ def test_numbers_of_islands_are_those_of_triangles(wrong: int):
         find_hidden(surface, np.where(part == 0, wrong, 0).astype(np.int32))
     with pytest.raises(lsgp.InputError, match="pass one for each"):
         find_hidden(surface, part[1:])
+
+
+def test_the_add_on_offers_what_the_library_takes() -> None:
+    """It has to register without the library, and so states the least share itself."""
+    source = (Path(__file__).parents[3] / "addon/operators/unwrapping/auto.py").read_text()
+    (offered,) = (
+        node.annotation.keywords
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.AnnAssign) and ast.unparse(node.target) == "inside"
+    )
+    bounds = {keyword.arg: ast.literal_eval(keyword.value) for keyword in offered}
+    assert (bounds["min"], bounds["max"]) == (LEAST_SHARE, 1)
