@@ -73,7 +73,9 @@ def undeclared_faults(
     if options.method == "lsgp":
         faults += _wrong_angles(result, opened, flipped) + _open_seams(surface, result, opened)
     if surface.directions is not None:
-        slack = lost_by_pressing(surface) if pressed else np.zeros(len(surface.triangles))
+        slack = np.zeros(len(surface.triangles))
+        if pressed:  # where a map is stretched along one direction, others turn toward it
+            slack = lost_by_pressing(surface) * anisotropy(surface, result.corner_uv)
         faults += _wrong_directions(surface, result, slack)
     if options.seamless is not None:
         faults += seamless_faults(opened, result, options.seamless)
@@ -82,14 +84,32 @@ def undeclared_faults(
 
 def lost_by_pressing(surface: lsgp.Surface) -> NDArray[np.float64]:
     """(m,) what each triangle may be turned or stretched by, relatively, as presets round positions to 2^-32 of the
-    farthest corner's distance from the middle: both ends of an edge move by two halves of that along each axis."""
+    farthest corner's distance from the middle: a corner moves by half of that along each axis, and that divided by
+    its height is what the triangle is strained by."""
     place = surface.positions[surface.triangles]
     with np.errstate(all="ignore"):
-        first, last = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
-        sides = np.linalg.norm([first, last, last - first], axis=2)
-        height = np.linalg.norm(np.cross(first, last), axis=1) / sides.max(axis=0)
-        radius = np.linalg.norm(np.ptp(place.reshape(-1, 3), axis=0))
-        return np.nan_to_num(2 * np.sqrt(3) * 2.0**-32 * radius / height, nan=np.inf)
+        sides = np.linalg.norm(place - np.roll(place, 1, axis=1), axis=2)
+        doubled = np.linalg.norm(np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]), axis=1)
+        corner = place.reshape(-1, 3)
+        radius = np.linalg.norm(corner - corner.mean(axis=0), axis=1).max(initial=0)
+        # Of lines and points that are left out of the middle: it is then elsewhere.
+        radius = 2 * radius if (surface.triangles == np.roll(surface.triangles, 1, axis=1)).any() else radius
+        moved = np.sqrt(3) / 2 * 2.0**-32 * radius
+        return np.nan_to_num(moved * (sides / doubled[:, None]).sum(axis=1), nan=np.inf)
+
+
+def anisotropy(surface: lsgp.Surface, corner_uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m,) by how much more each triangle is stretched along one direction than across it."""
+    place, z = surface.positions[surface.triangles], corner_uv @ [1, 1j]
+    first, last = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+    with np.errstate(all="ignore"):
+        length = np.linalg.norm(first, axis=1)
+        along = (first * last).sum(axis=1) / length
+        height = np.linalg.norm(np.cross(first, last), axis=1) / length
+        right = (z[:, 1] - z[:, 0]) / length
+        up = (z[:, 2] - z[:, 0] - along * right) / height
+        turned, mirrored = np.abs(right - 1j * up), np.abs(right + 1j * up)
+        return np.nan_to_num((turned + mirrored) / np.abs(turned - mirrored), nan=np.inf)
 
 
 def _wrong_figures(result: lsgp.Result) -> list[str]:
@@ -143,7 +163,10 @@ def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result, slack: NDArray
         unit = normal / area[:, None]
         length = np.abs(surface.directions).max(axis=1)
         inside = surface.directions / length[:, None]
-        inside -= (inside * unit).sum(axis=1)[:, None] * unit
+        out = (inside * unit).sum(axis=1)
+        inside -= out[:, None] * unit
+        # Where a direction leaves the surface, what is left of it turns with the triangle by as much more.
+        slack = slack * (1 + np.abs(out) / np.linalg.norm(inside, axis=1))
         along = [(np.cross(inside, last) * unit).sum(axis=1), (np.cross(first, inside) * unit).sum(axis=1)]
         image = along[0] * (z[:, 1] - z[:, 0]) + along[1] * (z[:, 2] - z[:, 0])
         # Needles and directions across the surface leave few digits.
