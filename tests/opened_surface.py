@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csgraph
 
 SAME_LENGTH = 1e-6  # relative: sides of a cut
-SAME_TURN = 1e-9
+SAME_TURN = 1e-5  # of lattices whose points single precision rounds
 NO_HEIGHT = 1e-9  # over the length of a side: such a triangle bends no way
 FOLDED = 3 * np.pi / 4  # radians of bending
 
@@ -141,8 +141,8 @@ def _running_on(
 
     Seen from the map: two sides with the same coordinates.  What the map cuts there it lists, once for each sheet: of
     the sides left, two of one part and of the same length, as sides of a cut have, and of several such, those that bend
-    least.  An edge that is marked is listed once more if two sides or more end there: it tells nothing of folds, but of
-    those whose sides are a turn of a seamless layout apart, as sides that end are not."""
+    least.  An edge that is marked is listed once more if two sides or more end there: it tells nothing of folds, but in
+    a seamless layout of those whose sides are a turn of the lattice apart, and of no others."""
     cuts, ends = Counter(edge_keys(*result.cut_edges.T).tolist()), Counter(ended.tolist())
     by_edge: dict[int, list[int]] = {}
     for side, key in zip(h.tolist(), edge_keys(vertex[h], vertex[next_corner(h)]).tolist(), strict=True):
@@ -163,9 +163,9 @@ def _running_on(
             return np.pi / 2
         return float(np.arctan2(np.linalg.norm(np.cross(*normals)), -normals[0] @ normals[1]))
 
-    def turned(a: int, b: int) -> bool:
+    def is_turn(a: int, b: int) -> bool:
         if result.seamless is None:
-            return False
+            return bend(a, b) < FOLDED
         ratio = (z[a] - z[ahead[a]]) / (z[ahead[b]] - z[b])
         return bool(abs(ratio**result.seamless.rotation_order - 1) < SAME_TURN)
 
@@ -178,7 +178,7 @@ def _running_on(
         taken: set[int] = set()
         cut = cuts[key]
         if key in marked:
-            apart = [pair for pair in apart if not differ(*pair) and (bend(*pair) < FOLDED or turned(*pair))]
+            apart = [pair for pair in apart if not differ(*pair) and is_turn(*pair)]
             cut -= ends[key] + len(sides) - 2 * (len(together) + cut) >= 2
         for candidates, most in ((together, len(together)), (apart, cut)):
             for pair in candidates:
