@@ -198,6 +198,14 @@ def test_sound_maps_of_sheets_that_meet_at_seams_pass(
     assert undeclared_faults(given, result, options) == []
 
 
+def test_sides_of_one_length_that_end_at_a_seam_are_no_sides_of_a_cut() -> None:
+    """Three triangles end there, two of which are mirror images."""
+    mesh = zoo.member("random-complex-vertices=9-triangles=12-seed=0").mesh()
+    given = lsgp.Surface(mesh.positions, mesh.triangles, seams=np.array([[1, 5], [2, 5], [4, 5], [4, 6]], np.int32))
+    options = lsgp.Options(seamless=lsgp.Seamless(tiles=4, coarse_grid="merge"))
+    assert undeclared_faults(given, lsgp.parameterize(given, [], None, options), options) == []
+
+
 @pytest.mark.parametrize("lattice", TILED)
 def test_sound_seamless_layouts_pass(lattice: str) -> None:
     assert undeclared_faults(SURFACE, SEAMLESS[lattice], TILED[lattice]) == []
