@@ -254,12 +254,14 @@ def crease_borders(
 
 
 def find_tubes(surface: Surface, cones: ArrayLike = (), *, progress: Progress | None = None) -> Tubes:
-    """The tubes of components that consist of them for four fifths of their area or more.
+    """The tubes of components that consist of them for four fifths of their area or more, and handles of others.
 
     Between its borders a tube unfolds into a strip with `Options.border` "strips". It ends where other faces than quads
-    follow, or where the cone that a ring lies on develops into more than half a disk. A quad is two triangles on both
-    sides of an edge that is not among `Surface.edges`; if that is None, on both sides of the longest edge of both.
-    Components with cones or marked seams have none, but for tubes that seams open from one end to the other.
+    follow, or where the cone that a ring lies on develops into more than half a disk; one that is closed on itself, as
+    a knot is, ends nowhere. A quad is two triangles on both sides of an edge that is not among `Surface.edges`; if that
+    is None, on both sides of the longest edge of both. Handles and what is closed on itself are tubes only if their
+    strips would be stretched by no more than 1.05. Components with cones or marked seams have none, but for tubes that
+    seams open from one end to the other.
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
     arguments.require_callable(progress)

@@ -31,7 +31,7 @@ struct Weights {
   double borders = 0.3;  // the same at creases, across which the texture does not run on
   double cones = 0.1;    // each one, around which it turns; on a component by the square root of its share of the area
   double square = 1.2;   // as much of the texture as islands fill, left empty
-  double strips = 5.0;   // that tubes have no cones, so that they are straight strips; by area
+  double strips = 15.0;  // that tubes are laid out as straight strips; by area
   double symmetry = 1.0;  // that cuts run alike on both sides of a mirror plane; half of it, that cones do
 };
 

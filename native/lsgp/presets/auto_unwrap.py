@@ -40,7 +40,7 @@ class Weights:
     islands: each one; a tenth of them where there are more than ten. cuts: those as long as the square root of the
     surface's area. borders: the same at creases, across which the texture does not run on. cones: each one, around
     which it turns; of several components by the square root of their share of the area. square: as much of the texture
-    as islands fill, left empty. strips: that tubes, by their share of the area, have no cones and are straight
+    as islands fill, left empty. strips: that tubes, by their share of the area, are laid out straight, as
     strips. symmetry: that cuts run alike on both sides of a mirror plane; half of it, that cones
     do.
 
@@ -52,7 +52,7 @@ class Weights:
     borders: float = 0.3
     cones: float = 0.1
     square: float = 1.2
-    strips: float = 5.0
+    strips: float = 15.0
     symmetry: float = 1.0
 
     def __post_init__(self) -> None:

@@ -197,7 +197,8 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     const Shape shape({component.mesh, geometry}, options.without_noise);
     const PlacementTask task{shape.surface(), given.cones, allowed, mirrored};
     PlacementOptions of_component = options;
-    const bool is_unrolled = given.may_be_strip && component.mesh.is_ring() && tube_shape(task) != TubeShape::none;
+    const TubeShape tube = given.may_be_strip ? tube_shape(task) : TubeShape::none;
+    const bool is_unrolled = component.mesh.is_ring() ? tube != TubeShape::none : tube == TubeShape::even;
     if (is_unrolled) of_component.count = 0;
     PlacedCones found =
         place_on({component, task, work.results(component)}, {surface, of_component, twins, work.monitor()}, findings);

@@ -87,7 +87,7 @@ void Assembly::divide(const OpenedSurface& opened, const ComponentTask& task, Co
   const StretchOptions stretch{options_.stretch, task.importance};
   const auto advance = [this] { monitor_.advance(0); };
   if (task.is_strip && !opened.mesh.has_features()) {
-    straighten_islands({with_marked_sides(opened.mesh, map), opened.geometry}, SideKinds::marked, stretch, advance,
+    straighten_islands({with_marked_sides(opened.mesh, map), opened.geometry}, SideKinds::of_strip, stretch, advance,
                        map);
     map.release_reasons.clear();
   } else {

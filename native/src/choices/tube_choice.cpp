@@ -7,9 +7,12 @@
 #include <memory>
 #include <utility>
 
+#include "base/number_text.hpp"
 #include "base/progress_share.hpp"
+#include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/edge_set.hpp"
+#include "mesh/large_surface.hpp"
 #include "mesh/topology.hpp"
 
 namespace lsgp {
@@ -25,23 +28,80 @@ PerComponent<char> with_tubes(const SurfaceParts& parts, const Tubes& tubes) {
   return out;
 }
 
-// Those of some edges that are on components without tubes.
-VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, const PerComponent<char>& has_tubes) {
+PerComponent<double> areas_of_tubes(const SurfaceParts& parts, const PerTriangle<char>& in_tubes) {
+  PerComponent<double> out(parts.count(), 0);
+  for (std::size_t f = 0; f < in_tubes.size(); ++f) {
+    if (in_tubes[f] && parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] += parts.triangle_areas()[f];
+  }
+  return out;
+}
+
+// Whether each component consists of tubes, instead of having some for handles.
+PerComponent<char> consist_of_tubes(const SurfaceParts& parts, const PerTriangle<char>& in_tubes) {
+  constexpr double most_of_handles = 0.5;  // of the area; what consists of tubes has four fifths
+  const PerComponent<double> area = areas_of_tubes(parts, in_tubes);
+  PerComponent<char> out(parts.count(), 0);
+  for (Index i = 0; i < parts.count(); ++i) out[i] = area[i] > most_of_handles * parts.areas()[i];
+  return out;
+}
+
+PerTriangle<char> triangles_in(const Tubes& tubes, const SurfaceParts& parts) {
+  PerTriangle<char> out(parts.surface().triangles.rows(), 0);
+  for (const Index f : tubes.triangles) out[f] = 1;
+  return out;
+}
+
+// Those of some edges that are neither on components that consist of tubes nor on handles.
+VertexPairs beside_tubes(const VertexPairs& edges, const SurfaceParts& parts, const PerTriangle<char>& in_tubes) {
+  const PerComponent<char> consists = consist_of_tubes(parts, in_tubes);
   return filtered(edges, [&](Eigen::Index e) {
-    const Index f = parts.triangle_at(edges(e, 0), edges(e, 1));
-    return f == none || parts.of_triangle()[f] == none || !has_tubes[parts.of_triangle()[f]];
+    bool is_beside = true;
+    parts.for_each_side(edges(e, 0), edges(e, 1), [&](Index side) {
+      const Index f = side / 3, part = parts.of_triangle()[f];
+      is_beside = is_beside && !in_tubes[f] && (part == none || !consists[part]);
+    });
+    return is_beside;
   });
 }
 
-// Those that seams open, which end nowhere else.
-void keep_opened(const Surface& surface, Tubes& tubes) {
-  if (tubes.triangles.empty()) return;
-  const SurfaceParts parts{std::cref(surface)};
-  const PerComponent<char> has_seams = have_edges(parts, parts.surface().seams);
-  const auto is_other = [&](Index f) { return parts.of_triangle()[f] == none || !has_seams[parts.of_triangle()[f]]; };
+// Of some components alone.
+void keep_on(const SurfaceParts& parts, const PerComponent<char>& is_kept, Tubes& tubes) {
+  const auto is_other = [&](Index f) {
+    return f == none || parts.of_triangle()[f] == none || !is_kept[parts.of_triangle()[f]];
+  };
   std::vector<Index>& own = tubes.triangles;
   own.erase(std::remove_if(own.begin(), own.end(), is_other), own.end());
-  tubes.borders.resize(0, 2);
+  const VertexPairs& all = tubes.borders;
+  tubes.borders =
+      VertexPairs(filtered(all, [&](Eigen::Index e) { return !is_other(parts.triangle_at(all(e, 0), all(e, 1))); }));
+}
+
+// Closed components with creases whose tubes end nowhere: washers and walls of pipes, which unfold without stretch
+// between their creases.
+PerComponent<char> creased_rings(const SurfaceParts& parts, const CreaseBorders& creases, const Tubes& tubes) {
+  PerComponent<char> out = have_edges(parts, joined(creases.required, creases.possible));
+  const PerComponent<char> ends = have_edges(parts, joined(tubes.borders, parts.surface().seams));
+  for (Index i = 0; i < parts.count(); ++i) out[i] = out[i] && !ends[i];
+  for (const Index f : tubes.triangles) {
+    const auto corners = parts.surface().triangles.row(f);
+    for (int i = 0; i < 3; ++i) {
+      Index sides = 0;
+      parts.for_each_side(corners[i], corners[(i + 1) % 3], [&](Index) { ++sides; });
+      if (sides < 2 && parts.of_triangle()[f] != none) out[parts.of_triangle()[f]] = 0;
+    }
+  }
+  return out;
+}
+
+// Without handles that are worth less than the islands they become.
+void leave_out_small_handles(const SurfaceParts& parts, const Weights& weights, Tubes& tubes) {
+  const PerTriangle<char> in_tubes = triangles_in(tubes, parts);
+  const PerComponent<double> area = areas_of_tubes(parts, in_tubes);
+  PerComponent<char> is_kept = consist_of_tubes(parts, in_tubes);
+  for (Index i = 0; i < parts.count(); ++i) {
+    is_kept[i] = is_kept[i] || weights.strips * area[i] > (weights.islands + error_of_estimates) * parts.area();
+  }
+  keep_on(parts, is_kept, tubes);
 }
 
 // Of the area, what is in tubes.
@@ -74,23 +134,35 @@ double least_cost(const BorderedSurfaces& surfaces, const Weights& weights) {
 
 }  // namespace
 
-Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
-                const Progress& progress) {
+Tubes tubes_for(const Surface& surface, const GivenCones& given, const CreaseBorders& creases,
+                const MapOptions& options, const Pins& pins, const Progress& progress) {
   if (options.of_map.seamless) return {};
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
   if (!is_plain || given.count || !pins.corners.empty()) return {};
   Tubes out = find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
-  if (options.of_map.seams == SeamMode::exact) keep_opened(surface, out);
+  if (out.triangles.empty()) return out;
+  const SurfaceParts parts{std::cref(surface)};
+  if (options.of_map.seams == SeamMode::exact) {
+    keep_on(parts, have_edges(parts, parts.surface().seams), out);
+    out.borders.resize(0, 2);
+  }
+  PerComponent<char> is_kept = creased_rings(parts, creases, out);
+  for (char& each : is_kept) each = !each;
+  keep_on(parts, is_kept, out);
+  if (surface.triangles.rows() >= least_large) keep_on(parts, consist_of_tubes(parts, triangles_in(out, parts)), out);
   return out;
 }
 
 Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,
                    const Progress& progress) {
   const CreaseBorders& creases = ends.creases;
-  const Tubes& tubes = ends.tubes;
+  Tubes tubes = ends.tubes;
   std::shared_ptr<PerTriangle<char>> in_tubes;
-  if (!tubes.triangles.empty()) in_tubes = std::make_shared<PerTriangle<char>>(surface.triangles.rows(), 0);
-  for (const Index f : tubes.triangles) (*in_tubes)[f] = 1;
+  if (!tubes.triangles.empty()) {
+    const SurfaceParts all{std::cref(surface)};
+    leave_out_small_handles(all, objective.weights(), tubes);
+    if (!tubes.triangles.empty()) in_tubes = std::make_shared<PerTriangle<char>>(triangles_in(tubes, all));
+  }
   const auto ending_at = [&](const VertexPairs& borders) {
     Surface ending = surface;
     ending.borders = joined(ending.borders, borders);
@@ -107,8 +179,8 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
   const SurfaceParts& parts = usual.first()->parts;
   if (tubes.triangles.empty()) return best(usual, creases, TubesBecome::anything, progress);
   const PerComponent<char> has_tubes = with_tubes(parts, tubes);
-  BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, has_tubes), tubes.borders));
-  const CreaseBorders others{{}, beside_tubes(creases.possible, parts, has_tubes)};
+  BorderedSurfaces unrolled = ending_at(joined(beside_tubes(creases.required, parts, *in_tubes), tubes.borders));
+  const CreaseBorders others{{}, beside_tubes(creases.possible, parts, *in_tubes)};
   const auto quality = [&](const Made& made, const Progress& share) { return objective.quality(*made, share); };
   const double bent = objective.weights().strips * share_of_tubes(parts, tubes);
   Made first;  // of the two, once it is made
@@ -131,6 +203,29 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
        quality,
        {}});
   return objective.choose(std::move(candidates), progress);
+}
+
+void tell_stretched_strips(MadeMap& made) {
+  constexpr double most_l2 = 1.05;  // what placed cones may leave
+  if (made.options.of_map.border != BorderMode::strips || !made.surface->in_tubes) return;
+  const SurfaceParts& parts = made.surface->parts;
+  const PerTriangle<char>& in_tubes = *made.surface->in_tubes;
+  const PerComponent<double> stretches = stretches_on(parts, made.result);
+  double most = 0;
+  std::vector<Index> triangles;
+  for (Index f = 0; f < static_cast<Index>(in_tubes.size()); ++f) {
+    const Index part = parts.of_triangle()[f];
+    if (!in_tubes[f] || part == none || !(stretches[part] > most_l2)) continue;
+    most = std::max(most, stretches[part]);
+    triangles.push_back(f);
+  }
+  if (triangles.empty()) return;
+  made.result.warnings.push_back(
+      {Code::high_distortion,
+       concat("Tubes that wind or bend tightly are longer on one side than on the other: as straight strips they are "
+              "stretched by up to ",
+              decimals(100 * (most - 1), 1), " %. With the weight of strips at 0 they get cones instead."),
+       {ElementKind::triangles, std::move(triangles)}});
 }
 
 }  // namespace lsgp

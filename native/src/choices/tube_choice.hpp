@@ -10,10 +10,11 @@
 namespace lsgp {
 
 // The tubes of a surface, which may become strips. None in seamless layouts, whose cuts are to be invisible, and none
-// with straight or turning borders, pins or a number of cones; where seams alone are cut, those that these open.
-// progress: without time of its own.  Throws what `find_tubes` throws.
-Tubes tubes_for(const Surface& surface, const GivenCones& given, const MapOptions& options, const Pins& pins,
-                const Progress& progress);
+// with straight or turning borders, pins or a number of cones; where seams alone are cut, those that these open. None
+// on closed components with creases that end nowhere, such as washers, which unfold between these. progress: without
+// time of its own.  Throws what `find_tubes` throws.
+Tubes tubes_for(const Surface& surface, const GivenCones& given, const CreaseBorders& creases,
+                const MapOptions& options, const Pins& pins, const Progress& progress);
 
 struct EndsOfSurface {
   const CreaseBorders& creases;
@@ -28,5 +29,8 @@ using MakeWithTubes = std::function<Made(const std::shared_ptr<BorderedSurface>&
 // as they are or as strips, whichever costs less.
 Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const MakeWithTubes& make, Objective& objective,
                    const Progress& progress);
+
+// Adds a warning where a map's straight strips are stretched by more than placed cones may leave.
+void tell_stretched_strips(MadeMap& made);
 
 }  // namespace lsgp

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/union_find.hpp"
 #include "creases/face_quads.hpp"
 #include "creases/opened_tube.hpp"
 #include "cut/cut_cost.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double least_share = 0.8;  // of a component's area, of tubes: more than four sides of a cube
 constexpr double steepest = 0.5;     // the sine of half a cone's angle: half a disk
+constexpr double most_even = 1.1;    // between girths: texel density is off by a twentieth at most
+constexpr double least_handle = 1;   // of its girth: shorter ones are rims
 
 // The side of a quad that a halfedge is, as 4 * quad + side; none if it is no side.
 using SideOf = PerHalfedge<Index>;
@@ -36,6 +39,8 @@ class Rings {
   const Array<Ring>& all() const { return rings_; }
   // The ring and its rim across a whole rim; none where other faces, or several rings, are there.
   std::optional<std::pair<Index, int>> across(Index ring, int rim) const;
+  // The quad across a halfedge; none where another face is there.
+  Index quad_across(Index halfedge) const;
 
  private:
   void add_ring(Index quad, int side);
@@ -113,12 +118,21 @@ std::optional<std::pair<Index, int>> Rings::across(Index ring, int rim) const {
   return std::pair(found / 2, static_cast<int>(found % 2));
 }
 
+Index Rings::quad_across(Index halfedge) const {
+  const Index beyond = mesh_.twin[halfedge];
+  const Index at = beyond == none ? none : side_of_[beyond];
+  return at == none ? none : at / 4;
+}
+
 // A stack of rings and the halfedges of its ends.
 struct Tube {
-  Array<Index> quads;
+  Array<Index> rings, quads;
   std::array<Array<Index>, 2> end;
   double area = 0;
   std::array<double, 2> girth;  // the least and the largest
+  bool is_closed = false;       // on itself, as a torus: it has no ends
+
+  double unevenness() const { return girth[1] / girth[0]; }
 };
 
 class TubeSearch {
@@ -127,8 +141,12 @@ class TubeSearch {
       : surface_(surface), quads_(find_quads(surface)), rings_(surface.mesh, quads_) {}
 
   const Array<Quad>& quads() const { return quads_; }
-  // Tubes that share no quad, the largest first.
+  // Tubes that share no quad, the largest first. Those that are closed on themselves are tubes only if they are strips
+  // as well as placed cones leave other maps: what goes around a hole is no rope.
   Array<Tube> find() const;
+  // The L2 stretch of a rectangle whose rows and columns are as wide as those of a tube in the mean. In a bend of
+  // constant radius R a round tube of radius r has (1 + 3/2 (r / R)^2)^(1/4).
+  double stretch_as_rectangle(const Tube& tube) const;
 
  private:
   double area_of(const Ring& ring) const;
@@ -161,6 +179,50 @@ bool TubeSearch::is_steep(const Ring& ring) const {
   return std::abs(one - other) > steepest * 2 * M_PI * height;
 }
 
+double TubeSearch::stretch_as_rectangle(const Tube& tube) const {
+  Array<char> is_own(quads_.size(), 0);
+  for (const Index q : tube.quads) is_own[q] = 1;
+  struct Extent {
+    Index quad, ring;
+    double area, along, across;
+  };
+  Array<Extent> extents;
+  UnionFind rows(static_cast<Index>(quads_.size()));
+  for (const Index r : tube.rings) {
+    const Ring& ring = rings_.all()[r];
+    for (Index k = 0; k < ssize(ring.quads); ++k) {
+      const Index q = ring.quads[k];
+      const double area = surface_.geometry.area[quads_[q].side[0] / 3] + surface_.geometry.area[quads_[q].side[2] / 3];
+      double across = 0;
+      for (const int rim : {0, 1}) {
+        const Index h = element(ring.rim, rim)[k], beyond = rings_.quad_across(h);
+        across += surface_.geometry.length[h] / 2;
+        if (beyond != none && is_own[beyond]) rows.unite(q, beyond);
+      }
+      extents.push_back({q, r, area, area / across, across});
+    }
+  }
+  struct Sum {
+    double value = 0;
+    Index count = 0;
+    double mean() const { return value / count; }
+    void add(double each) { value += each, ++count; }
+  };
+  Array<Sum> along(rings_.all().size()), across(quads_.size());
+  for (const Extent& each : extents) {
+    along[each.ring].add(each.along);
+    across[rows.find(each.quad)].add(each.across);
+  }
+  double of_along = 0, of_across = 0, image = 0;
+  for (const Extent& each : extents) {
+    const double length = along[each.ring].mean(), width = across[rows.find(each.quad)].mean();
+    of_along += each.area * std::pow(each.along / length, 2);
+    of_across += each.area * std::pow(each.across / width, 2);
+    image += length * width;
+  }
+  return std::sqrt(std::sqrt(of_along * of_across) * image) / tube.area;
+}
+
 Array<Tube> TubeSearch::find() const {
   const Array<Ring>& all = rings_.all();
   Array<char> is_used;
@@ -170,13 +232,12 @@ Array<Tube> TubeSearch::find() const {
     if (is_used[r]) continue;
     is_used[r] = 1;
     Tube tube;
-    Array<Index> rings{r};
-    bool is_closed = false;
+    Array<Index>& rings = tube.rings = {r};
     for (const int direction : {0, 1}) {
       Index ring = r;
       int rim = direction;
       while (const auto beyond = rings_.across(ring, rim)) {
-        is_closed |= beyond->first == r;
+        tube.is_closed |= beyond->first == r;
         if (is_used[beyond->first]) break;
         ring = beyond->first;
         rim = 1 - beyond->second;
@@ -185,7 +246,7 @@ Array<Tube> TubeSearch::find() const {
       }
       element(tube.end, direction) = element(all[ring].rim, rim);
     }
-    if (is_closed) continue;  // a torus
+    if (tube.is_closed) tube.end = {};
     tube.girth = {girth(all[r], 0), girth(all[r], 0)};
     for (const Index ring : rings) {
       for (const int rim : {0, 1}) {
@@ -195,9 +256,13 @@ Array<Tube> TubeSearch::find() const {
       tube.area += area_of(all[ring]);
       tube.quads.insert(tube.quads.end(), all[ring].quads.begin(), all[ring].quads.end());
     }
+    if (tube.is_closed && !(stretch_as_rectangle(tube) <= most_l2_of_strip)) continue;
     tubes.push_back(std::move(tube));
   }
-  std::stable_sort(tubes.begin(), tubes.end(), [](const Tube& a, const Tube& b) { return a.area > b.area; });
+  // A torus is a tube both ways.
+  std::stable_sort(tubes.begin(), tubes.end(), [](const Tube& a, const Tube& b) {
+    return a.is_closed && b.is_closed ? a.unevenness() < b.unevenness() : a.area > b.area;
+  });
   Array<char> is_taken(quads_.size(), 0);
   Array<Tube> out;
   for (Tube& tube : tubes) {
@@ -206,6 +271,35 @@ Array<Tube> TubeSearch::find() const {
     out.push_back(std::move(tube));
   }
   return out;
+}
+
+// Whether the rest of the surface joins both ends of a tube that is long and a strip nearly without stretch.
+bool is_handle(const HalfedgeMesh& mesh, const TubeSearch& search, const Tube& tube) {
+  const Array<Quad>& quads = search.quads();
+  const double mean = (tube.girth[0] + tube.girth[1]) / 2;
+  if (mesh.genus == 0 || tube.is_closed || tube.area < least_handle * mean * mean) return false;
+  if (!(search.stretch_as_rectangle(tube) <= most_l2_of_strip)) return false;
+  PerTriangle<char> is_in_tube(mesh.triangle_count(), 0);
+  for (const Index q : tube.quads) {
+    for (const int side : {0, 2}) is_in_tube[element(quads[q].side, side) / 3] = 1;
+  }
+  UnionFind rest(mesh.triangle_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index beyond = mesh.twin[h];
+    if (beyond > h && !is_in_tube[h / 3] && !is_in_tube[beyond / 3]) rest.unite(h / 3, beyond / 3);
+  }
+  const auto around = [&](const Array<Index>& end) {
+    Array<Index> out;
+    for (const Index h : end) {
+      const Index beyond = mesh.twin[h];
+      if (beyond != none && !is_in_tube[beyond / 3]) out.push_back(rest.find(beyond / 3));
+    }
+    sort_unique(out);
+    return out;
+  };
+  const Array<Index> one = around(tube.end[0]), other = around(tube.end[1]);
+  return std::any_of(one.begin(), one.end(),
+                     [&](Index part) { return std::binary_search(other.begin(), other.end(), part); });
 }
 
 }  // namespace
@@ -221,8 +315,9 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
   const Array<Tube> tubes = search.find();
   double area = 0;
   for (const Tube& tube : tubes) area += tube.area;
-  if (area < least_share * surface.geometry.total_area) return out;
+  const bool consists_of_tubes = area >= least_share * surface.geometry.total_area;
   for (const Tube& tube : tubes) {
+    if (!consists_of_tubes && !is_handle(mesh, search, tube)) continue;
     for (const Array<Index>& end : tube.end) {
       for (const Index h : end) {
         if (may_cut(mesh, h)) out.is_end[h] = out.is_end[mesh.twin[h]] = 1;
@@ -236,13 +331,12 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
 }
 
 TubeShape tube_shape(const MetricMesh& surface) {
-  constexpr double most_even = 1.1;  // between girths: texel density is off by a twentieth at most
   const HalfedgeMesh& mesh = surface.mesh;
   const auto shape_of = [](const std::array<double, 2>& girths) {
     return girths[1] <= most_even * girths[0] ? TubeShape::even : TubeShape::tapering;
   };
   if (const auto girths = girths_of_opened_tube(surface)) return shape_of(*girths);
-  if (!mesh.is_ring()) return TubeShape::none;
+  if (!mesh.is_ring() && !mesh.is_torus()) return TubeShape::none;
   const TubeSearch search(surface);
   const Array<Tube> tubes = search.find();
   if (tubes.empty() || 2 * ssize(tubes.front().quads) != mesh.triangle_count()) return TubeShape::none;

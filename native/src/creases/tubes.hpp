@@ -7,7 +7,10 @@
 
 namespace lsgp {
 
-// The tubes of a component that consists of them for the most part.
+// Of what need not be a strip, as much as placed cones may leave.
+constexpr double most_l2_of_strip = 1.05;
+
+// The tubes of a component that consists of them for the most part, or else its handles.
 struct ComponentTubes {
   PerHalfedge<char> is_end;  // on both halfedges of the edges at which they end
   Array<Index> triangles;    // of tubes
@@ -17,11 +20,14 @@ struct ComponentTubes {
 //
 // Quads are as of find_quads. A ring of them is closed across opposite sides, and a tube is a stack of rings joined
 // along whole rims. Where the cone that a ring lies on develops into more than half a disk, its inner end is closed
-// better than unrolled: tubes end there. A disk that is a tube, open along a line, has no further ends.
+// better than unrolled: tubes end there. A disk that is a tube, open along a line, has no further ends, and neither has
+// a torus, which is a tube only if it bends so little that a strip is hardly stretched. A handle is a tube of which the
+// same is true, whose ends the rest of the surface joins, and which is at least as long as its girth.
 ComponentTubes find_component_tubes(const MetricMesh& surface);
 
 // What a component is, from one boundary to the other, or open along a line between them: a tube of about the same
-// girth all along, as a pipe is, one that tapers, as a horn does, or none.
+// girth all along, as a pipe is, one that tapers, as a horn does, or none. A torus of rings of about the same girth is
+// an even one.
 enum class TubeShape { none, even, tapering };
 TubeShape tube_shape(const MetricMesh& surface);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cut/cut_cost.hpp"
 
@@ -51,7 +52,79 @@ Array<Index> path_from(const MetricMesh& surface, Index start, Index& left) {
   return {};
 }
 
+CutGraph graph_of(const HalfedgeMesh& mesh, const Array<Index>& halfedges) {
+  PerHalfedge<char> is_cut(mesh.halfedge_count(), 0);
+  for (const Index h : halfedges) is_cut[h] = is_cut[mesh.twin[h]] = 1;
+  return trace_cuts(mesh, PerVertex<char>(mesh.vertex_count(), 0), std::move(is_cut));
+}
+
+struct ClosedPath {
+  Array<Index> halfedges;
+  double cost = 0;
+};
+
+// Those that go straight ahead and pass no vertex twice, through vertices of quads alone.
+Array<ClosedPath> closed_paths(const MetricMesh& surface) {
+  constexpr Index most_edges = 8;  // of four quads with their diagonals
+  const HalfedgeMesh& mesh = surface.mesh;
+  PerVertex<Index> degree(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) ++degree[mesh.origin(h)];
+  PerHalfedge<char> is_passed(mesh.halfedge_count(), 0);
+  PerVertex<Index> last_path(mesh.vertex_count(), none);
+  Array<ClosedPath> out;
+  Index number = 0;
+  for (Index first = 0; first < mesh.halfedge_count(); ++first) {
+    if (is_passed[first] || !may_cut(mesh, first)) continue;
+    ClosedPath path;
+    ++number;
+    bool is_simple = true;
+    Index h = first;
+    do {
+      is_passed[h] = is_passed[mesh.twin[h]] = 1;
+      path.halfedges.push_back(h);
+      path.cost += cut_cost(surface, h);
+      const Index v = mesh.target(h);
+      is_simple &= last_path[v] != number;
+      last_path[v] = number;
+      h = degree[v] <= most_edges ? straight_ahead(surface, v, mesh.twin[h]) : none;
+    } while (h != none && h != first && !is_passed[h]);
+    if (is_simple && h == first) out.push_back(std::move(path));
+  }
+  return out;
+}
+
 }  // namespace
+
+std::optional<CutGraph> cut_around(const MetricMesh& torus) {
+  const HalfedgeMesh& mesh = torus.mesh;
+  const Array<ClosedPath> paths = closed_paths(torus);
+  PerVertex<Array<Index>> through(mesh.vertex_count());
+  for (Index i = 0; i < ssize(paths); ++i) {
+    for (const Index h : paths[i].halfedges) through[mesh.target(h)].push_back(i);
+  }
+  Array<std::pair<Index, Index>> crossings;
+  for (const Array<Index>& own : through) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t k = i + 1; k < own.size(); ++k) crossings.emplace_back(own[i], own[k]);
+    }
+  }
+  std::sort(crossings.begin(), crossings.end());
+  const std::pair<Index, Index>* best = nullptr;
+  double least = 0;
+  for (std::size_t i = 0, end = 0; i < crossings.size(); i = end) {
+    while (end < crossings.size() && crossings[end] == crossings[i]) ++end;
+    const auto& [one, other] = crossings[i];
+    const double cost = paths[one].cost + paths[other].cost;
+    if (end - i > 1 || (best != nullptr && cost >= least)) continue;
+    best = &crossings[i];
+    least = cost;
+  }
+  if (best == nullptr) return std::nullopt;
+  Array<Index> cut = paths[best->first].halfedges;
+  const Array<Index>& other = paths[best->second].halfedges;
+  cut.insert(cut.end(), other.begin(), other.end());
+  return graph_of(mesh, cut);
+}
 
 std::optional<CutGraph> cut_across(const MetricMesh& ring) {
   const HalfedgeMesh& mesh = ring.mesh;
@@ -68,9 +141,7 @@ std::optional<CutGraph> cut_across(const MetricMesh& ring) {
     best = std::move(path);
   }
   if (best.empty()) return std::nullopt;
-  PerHalfedge<char> is_cut(mesh.halfedge_count(), 0);
-  for (const Index h : best) is_cut[h] = is_cut[mesh.twin[h]] = 1;
-  return trace_cuts(mesh, PerVertex<char>(mesh.vertex_count(), 0), std::move(is_cut));
+  return graph_of(mesh, best);
 }
 
 }  // namespace lsgp

@@ -132,6 +132,17 @@ class Compactor {
   WholeIsland describe(const Array<Index>& faces, const Array<Complex>& hull) const;
   IslandCells cells_of(const Array<Index>& island, Complex along);
   std::optional<Line> axis_of(const Array<Index>& island);
+  // Between equal pieces of an island that is a long strip, none of others.
+  Array<Line> lines_across_strip(const Array<Complex>& hull, const WholeIsland& island) const;
+  bool has_sharp_edges(const Array<Index>& faces);
+  // What is left of an island between some lines, and what that is worth.
+  struct Division {
+    Array<Array<Index>> pieces;
+    double worth = 0, length = 0;  // of the cuts
+  };
+  Division divided_at(const Array<Line>& lines, double band, const Array<Index>& faces, const WholeIsland& island);
+  // A long strip into equal pieces, if that gains anything.
+  Division divided_evenly(const Array<Index>& faces, const Array<Complex>& hull, const WholeIsland& island);
   Reflection fit_reflection(const Array<Index>& faces) const;
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
   Array<Index> without_slivers(const Array<Index>& faces, const WholeIsland& island, const Array<Index>& class_of);
@@ -367,40 +378,87 @@ WholeIsland Compactor::describe(const Array<Index>& faces, const Array<Complex>&
   return out;
 }
 
+Array<Line> Compactor::lines_across_strip(const Array<Complex>& hull, const WholeIsland& island) const {
+  constexpr double least_filled = 0.9;  // of its box
+  const Complex along = longer_side(hull);
+  const Extent extent = extent_along(hull, along);
+  if (!island.is_long || island.area < least_filled * extent.width() * extent.height()) return {};
+  const Index count = search_.pieces_of_strip(extent.width());
+  Array<Line> out;
+  for (Index i = 1; i < count; ++i)
+    out.push_back(Line{along, extent.low.real() + extent.width() * i / count}.reversed());
+  return out;
+}
+
+bool Compactor::has_sharp_edges(const Array<Index>& faces) {
+  bool out = false;
+  set_places(faces);
+  for (const Index face : faces) {
+    graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
+      out = out || (place_[other] != none && !is_smooth(link));
+    });
+  }
+  clear_places(faces);
+  return out;
+}
+
+Compactor::Division Compactor::divided_at(const Array<Line>& lines, double band, const Array<Index>& faces,
+                                          const WholeIsland& island) {
+  const Array<Index> class_of = without_slivers(faces, island, cut_along(lines, faces, band));
+  Division out{pieces_of(faces, class_of)};
+  double after = 0;
+  for (const Array<Index>& piece : out.pieces) after += search_.demand(Support(hull_of(piece)));
+  out.length = length_between(faces, class_of);
+  out.worth = search_.worth(island.demand - after, out.length, out.pieces.size());
+  return out;
+}
+
+Compactor::Division Compactor::divided_evenly(const Array<Index>& faces, const Array<Complex>& hull,
+                                              const WholeIsland& island) {
+  const Array<Line> lines = lines_across_strip(hull, island);
+  if (lines.empty() || has_sharp_edges(faces)) return {};
+  // Cuts in a wide band hug one end of it, but follow rows of faces that are bent in the map.
+  constexpr double narrow = 0.02, wide = 0.1;  // of a piece
+  constexpr double clearly_shorter = 0.98;
+  const double length = extent_along(hull, lines.front().normal).width() / static_cast<double>(lines.size() + 1);
+  const double row = beside_axis * std::sqrt(island.area / static_cast<double>(faces.size()));
+  Division out;
+  for (const double share : {narrow, wide}) {
+    Division made = divided_at(lines, std::max(share * length, row), faces, island);
+    if (out.pieces.empty() || made.length < clearly_shorter * out.length) out = std::move(made);
+  }
+  return out.worth > 0 ? std::move(out) : Division();
+}
+
 Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
   if (faces.size() < 2) return {};
   const Array<Complex> hull = hull_of(faces);
   const WholeIsland island = describe(faces, hull);
   if (island.demand - island.area < search_.least_gain()) return {};
+  Division best = divided_evenly(faces, hull, island);
+  // Others are mostly into two pieces, which are divided again: what one of them is worth says nothing about all.
+  if (best.pieces.size() > 2) return std::move(best.pieces);
   const std::optional<Line> axis = axis_of(faces);
   const Complex along = axis ? axis->normal : longer_side(hull);
   const IslandDivision division = search_.find_division(cells_of(faces, along), island, hull, along, axis);
-  if (division.lines.empty()) return {};
+  if (division.lines.empty()) return std::move(best.pieces);
   // A single line is the axis or at right angles to it.
   const bool is_axis = axis && division.lines.size() == 1 &&
                        std::abs(std::real(std::conj(axis->normal) * division.lines.front().normal)) > 0.5;
   const double band = is_axis ? beside_axis * std::sqrt(island.area / static_cast<double>(faces.size()))
                               : extent_along(hull, along).width() / division_positions;
-  Array<Array<Index>> best;
-  double most_worth = 0;
+  bool is_found = false;
   // Where the shortest cut of a band leaves too small a piece, a cut nearer to the line may not.
   for (const double width : {band, band / 4}) {
     // Of equally short cuts, one hugs one end of the band and one the other.
     for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
-      const Array<Index> class_of = without_slivers(faces, island, cut_along(lines, faces, width));
-      Array<Array<Index>> pieces = pieces_of(faces, class_of);
-      double after = 0;
-      for (const Array<Index>& piece : pieces) after += search_.demand(Support(hull_of(piece)));
-      // The cells only gave an estimate of the gain.
-      const double worth = search_.worth(island.demand - after, length_between(faces, class_of), pieces.size());
-      if (worth > most_worth * (1 + rounding)) {
-        most_worth = worth;
-        best = std::move(pieces);
-      }
+      Division made = divided_at(lines, width, faces, island);  // the cells only gave an estimate of the gain
+      is_found = is_found || made.worth > 0;
+      if (made.worth > best.worth * (1 + rounding)) best = std::move(made);
     }
-    if (!best.empty()) break;
+    if (is_found) break;
   }
-  return best;
+  return std::move(best.pieces);
 }
 
 }  // namespace

@@ -122,6 +122,11 @@ double Support::hull_area() const {
 DivisionSearch::DivisionSearch(const SharedSquare& square)
     : area_(square.area), price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1) {}
 
+Index DivisionSearch::pieces_of_strip(double length) const {
+  const double least = std::ceil(length / std::sqrt(large * area_ / fill));
+  return static_cast<Index>(std::min<double>(most_pieces, least));
+}
+
 double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
 
 bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& island) const {

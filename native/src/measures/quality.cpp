@@ -20,6 +20,8 @@ namespace {
 
 // Up to so many islands each counts in full, of more of them what makes the tenth part.
 constexpr double few_islands = 10;
+// Of tubes that unfold as they are: pipes, cones and prisms.
+constexpr double most_l2_of_plain = 1.001;
 
 // What cuts cost beyond their length; nothing in seamless layouts, whose cuts do not show.
 PerComponent<double> extra_costs(const SurfaceParts& parts, const Result& result) {
@@ -63,7 +65,7 @@ double filled_boxes(const Result& result) {
   return room > 0 ? area_of(result, result.corner_uv) / room : 1;
 }
 
-// The share of the area that is in tubes of components with cones, and in tubes opened by seams, unless they were laid
+// The share of the area that is in tubes of components with cones, and in those that are stretched without being laid
 // out as strips.
 double bent_tubes(const MadeMap& made) {
   const BorderedSurface& surface = *made.surface;
@@ -75,7 +77,10 @@ double bent_tubes(const MadeMap& made) {
   PerVertex<char> is_cone(parts.surface().positions.rows(), 0);
   for (const Index v : result.cones) is_cone[v] = 1;
   PerComponent<char> is_bent(parts.count(), 0);
-  if (made.options.of_map.border != BorderMode::strips) is_bent = have_edges(parts, parts.surface().seams);
+  if (made.options.of_map.border != BorderMode::strips) {
+    const PerComponent<double> stretches = stretches_on(parts, result);
+    for (Index i = 0; i < parts.count(); ++i) is_bent[i] = !(stretches[i] <= most_l2_of_plain);
+  }
   for (Index f = 0; f < count; ++f) {
     const auto corners = parts.surface().triangles.row(f);
     const bool has_cone = is_cone[corners[0]] || is_cone[corners[1]] || is_cone[corners[2]];

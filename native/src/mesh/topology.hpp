@@ -45,6 +45,7 @@ struct HalfedgeMesh {
   bool closed() const { return boundary_loops.empty(); }
   bool is_disk() const { return genus == 0 && boundary_loops.size() == 1; }
   bool is_ring() const { return genus == 0 && boundary_loops.size() == 2; }
+  bool is_torus() const { return genus == 1 && boundary_loops.empty(); }
   bool has_features() const { return !feature.empty(); }
 
   // The angle of a vertex without curvature: 2 pi in the interior, pi on the boundary.

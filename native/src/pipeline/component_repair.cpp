@@ -176,11 +176,11 @@ std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& ma
 std::optional<ComponentMap> ComponentRepair::straightened_as_strip(const CutSurface& surface, const ComponentMap& map) {
   const HalfedgeMesh marked = with_marked_sides(mesh_, map);
   const CutSurface strip{{marked, geometry_}, map.cut_graph, map.cut_mesh, surface.factor, surface.frame_tree};
-  std::optional<StraightSides> sides = sides_to_straighten(strip, map, SideKinds::marked);
+  std::optional<StraightSides> sides = sides_to_straighten(strip, map, SideKinds::of_strip, LineReading::whole);
   if (!sides) return std::nullopt;
   std::optional<ComponentMap> out =
       with_straight_sides({strip, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
-                          SideKinds::marked, std::move(*sides));
+                          SideKinds::of_strip, std::move(*sides));
   if (out) out->release_reasons.clear();
   return out;
 }

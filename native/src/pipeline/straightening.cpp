@@ -66,12 +66,13 @@ double marked_length(const CutSurface& surface) {
 // which may cost more, come first.
 class SideSearch {
  public:
-  SideSearch(const StraighteningTask& task, const ComponentMap& map, StraightSides straight)
+  SideSearch(const StraighteningTask& task, const ComponentMap& map, SideKinds kinds, StraightSides straight)
       : task_(task),
         map_(map),
         order_(sort_by_cost(straight)),
         sides_(std::move(straight.sides)),
         straight_(std::move(straight)),
+        most_growth_for_marked_(kinds == SideKinds::of_strip ? most_growth_of_strip : 1.1),
         most_l2_(largest_l2_straight(map.natural_l2)),
         may_overlap_(overlaps(task.surface, map)) {
     straight_.sides.clear();
@@ -82,7 +83,7 @@ class SideSearch {
     constexpr int work = 300000;  // triangles of the maps that are tried for sides that are not marked
     if (order_.marked > 0) {
       const double least_l2 = most_l2_;
-      most_l2_ = std::max(least_l2, most_growth_for_marked * map_.natural_l2);
+      most_l2_ = std::max(least_l2, most_growth_for_marked_ * map_.natural_l2);
       left_ = for_marked;
       keep_straight();
       add(order_.straight, order_.marked, false);
@@ -106,7 +107,8 @@ class SideSearch {
   double marked_length() const { return straight_.marked_length(); }
 
  private:
-  static constexpr double most_growth_for_marked = 1.1;  // of the L2 stretch
+  // A straight strip is what the other maps of a tube are compared with, so that only what is no map any more is none.
+  static constexpr double most_growth_of_strip = 2;
 
   // Marked features that are straight already stay so, whatever they have cost.
   void keep_straight() {
@@ -185,8 +187,9 @@ class SideSearch {
   const StraighteningTask& task_;
   const ComponentMap& map_;
   const SideOrder order_;
-  const Array<StraightSide> sides_;  // the cheapest first
-  StraightSides straight_;           // with the sides that are straight
+  const Array<StraightSide> sides_;      // the cheapest first
+  StraightSides straight_;               // with the sides that are straight
+  const double most_growth_for_marked_;  // of the L2 stretch
   double most_l2_;
   const bool may_overlap_;
   int left_ = 0;  // attempts
@@ -197,9 +200,9 @@ class SideSearch {
 
 std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds,
                                                  LineReading reading) {
-  StraightSides straight = find_straight_sides(
-      surface, *map.rotation, map.position,
-      {most_bend(map.natural_l2), kinds == SideKinds::with_creases, kinds == SideKinds::marked, reading});
+  StraightSides straight = find_straight_sides(surface, *map.rotation, map.position,
+                                               {most_bend(map.natural_l2), kinds == SideKinds::with_creases,
+                                                kinds == SideKinds::marked || kinds == SideKinds::of_strip, reading});
   if (!straight.reasons.empty()) return straight;
   if (straight.sides.empty() || (!straight.is_bent() && !straight.has_axes)) return std::nullopt;
   return straight;
@@ -212,15 +215,16 @@ std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, c
   const bool has_marked = !straight.reasons.empty();
   const double all = has_marked ? marked_length(task.surface) : 0;
   Array<Array<StraightSide>> tried{straight.sides};
-  SideSearch search(task, map, std::move(straight));
+  SideSearch search(task, map, kinds, std::move(straight));
   std::optional<ComponentMap> best = search.search();
+  if (kinds == SideKinds::of_strip) return best;
   double most = search.marked_length();
   for (const LineReading reading : {LineReading::opened, LineReading::divided}) {
     if (most >= all * (1 - rounding)) break;
     std::optional<StraightSides> other = sides_to_straighten(task.surface, map, kinds, reading);
     if (!other || std::find(tried.begin(), tried.end(), other->sides) != tried.end()) continue;
     tried.push_back(other->sides);
-    SideSearch again(task, map, std::move(*other));
+    SideSearch again(task, map, kinds, std::move(*other));
     std::optional<ComponentMap> found = again.search();
     if (!(again.marked_length() > most + least_gain * all)) continue;
     most = again.marked_length();
@@ -233,7 +237,8 @@ void straighten_islands(const MetricMesh& surface, SideKinds kinds, const Stretc
                         const StepHook& before_step, ComponentMap& map) {
   const CutSurface opened{surface, map.cut_graph, map.cut_mesh};
   if (map.natural_l2 == 0 || !is_one_network(opened)) return;
-  std::optional<StraightSides> sides = sides_to_straighten(opened, map, kinds);
+  const LineReading reading = kinds == SideKinds::of_strip ? LineReading::whole : LineReading::nearest;
+  std::optional<StraightSides> sides = sides_to_straighten(opened, map, kinds, reading);
   if (!sides) return;
   const ParallelTransport connection = connection_of_map(opened, map.curvature, *map.rotation, map.position);
   std::optional<ComponentMap> straight =

@@ -11,8 +11,9 @@
 
 namespace lsgp {
 
-// What is to be straight: marked features, and nearly straight sides, and creases inside as well.
-enum class SideKinds { marked, with_sides, with_creases };
+// What is to be straight: marked features, and nearly straight sides, and creases inside as well; or the sides of a
+// strip, each as a whole.
+enum class SideKinds { marked, with_sides, with_creases, of_strip };
 
 // The sides of these kinds in a map; none if there is nothing to do.
 std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds,

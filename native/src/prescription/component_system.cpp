@@ -57,8 +57,10 @@ CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerL
     return out;
   };
   CutGraph usual = connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
-  if (!interior_cones.empty() || usual.cuts.size() != 1 || !surface_.mesh.is_ring()) return usual;
-  std::optional<CutGraph> straight = cut_across(surface_);
+  const bool is_torus = surface_.mesh.is_torus();
+  const bool is_tube = is_torus || (surface_.mesh.is_ring() && usual.cuts.size() == 1);
+  if (!interior_cones.empty() || !is_tube) return usual;
+  std::optional<CutGraph> straight = is_torus ? cut_around(surface_) : cut_across(surface_);
   return straight && length_of(*straight) <= most_length * length_of(usual) ? std::move(*straight) : usual;
 }
 

@@ -44,6 +44,7 @@ class FeatureTracer {
         ends_(ends),
         position_(position),
         ends_at_junctions_(reading == LineReading::divided && surface.mesh.has_features()),
+        are_whole_(reading == LineReading::whole),
         is_traced_(surface.mesh.halfedge_count(), 0) {}
 
   FeatureLines trace() {
@@ -165,7 +166,8 @@ class FeatureTracer {
     const auto is_near = [](double of, double axis) { return std::abs(of - axis) < most_off_axis; };
     const double common = nearest_quarter_turn(mean);
     Array<double> out(ssize(angle), common);
-    if (std::all_of(angle.begin(), angle.end(), [&](double each) { return is_near(each, common); })) return out;
+    if (are_whole_ || std::all_of(angle.begin(), angle.end(), [&](double each) { return is_near(each, common); }))
+      return out;
     out[0] = nearest_quarter_turn(angle[0]);
     for (Index i = 1; i < ssize(angle); ++i) {
       out[i] = is_near(angle[i], out[i - 1]) ? out[i - 1] : nearest_quarter_turn(angle[i]);
@@ -182,7 +184,7 @@ class FeatureTracer {
   const PerHalfedge<char>& feature_;
   const PerVertex<char>& ends_;
   const Eigen::VectorXcd& position_;
-  const bool ends_at_junctions_;
+  const bool ends_at_junctions_, are_whole_;
   PerHalfedge<char> is_traced_;
 };
 
@@ -361,7 +363,8 @@ Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& fea
 FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,
                             const Eigen::VectorXcd& position, LineReading reading) {
   FeatureLines out = FeatureTracer(surface, feature, ends, position, reading).trace();
-  if (reading != LineReading::nearest) CornerOpener(surface, position, out.straight).open();
+  if (reading == LineReading::opened || reading == LineReading::divided)
+    CornerOpener(surface, position, out.straight).open();
   const auto rank = [](const FeatureLine& line) {
     return std::tuple(!line.is_marked, line.comes_last, line.bend * line.bend * line.length);
   };

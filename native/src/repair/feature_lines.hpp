@@ -38,6 +38,7 @@ enum class LineReading {
   nearest,  // the axis nearest to each line
   opened,   // another one where lines beside each other at a vertex would have the same axis and direction
   divided,  // and lines end where they turn at junctions of marked edges, those of borders included
+  whole,    // one axis for each line however it turns, the nearest to its mean direction
 };
 
 // ends: vertices at which lines end in addition, (n).

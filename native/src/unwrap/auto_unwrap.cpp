@@ -153,7 +153,7 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   constexpr double mapping = 0.9;  // of the time, where islands are packed afterward
   const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
   if (options.creases && weights.strips > 0) {
-    ends.tubes = tubes_for(surface, given, of_map, pins, share_of(choosing, 0, 0));
+    ends.tubes = tubes_for(surface, given, ends.creases, of_map, pins, share_of(choosing, 0, 0));
   }
   if (options.creases && !is_pinned) ends.outline = outline_for(surface, given, of_map, share_of(choosing, 0, 0));
   Objective objective(weights, {of_map.of_map.square_share});
@@ -173,7 +173,9 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
     const bool may_end = given.are_free() && of_map.of_map.seams != SeamMode::exact && its_ends.may_cut_open;
     const Made whole = may_end ? with_unfolded_parts(usual, of_map, by, share_of(share, 1, 1)) : usual;
     const Made around = best_of_front(whole, its_ends.outline, given.target, by, share_of(share, 1, 1));
-    return best_division(around, of_map, by, share);
+    const Made divided = best_division(around, of_map, by, share);
+    tell_stretched_strips(*divided);
+    return divided;
   };
   const Progress late = share_of(after_measuring(limit.unlimited()), is_packed ? mapping : 1, is_packed ? mapping : 1);
   const Made best = best_in_time(limit, objective, of_map, [&] {

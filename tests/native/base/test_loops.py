@@ -100,6 +100,9 @@ REVIEWED = {
     ],
     "cut/cut_across.cpp": [
         ("for (Index h = first;;)", AROUND_A_VERTEX, SHORT),
+        ("while (h != none && h != first && !is_passed[h])", "halfedges, each once in all", SHORT),
+        ("for (std::size_t i = 0, end = 0; i < crossings.size(); i = end)", "passes a crossing each time", SHORT),
+        ("while (end < crossings.size() && crossings[end] == crossings[i])", "crossings, each once in all", SHORT),
     ],
     "creases/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
     "creases/crease_borders.cpp": [

@@ -107,6 +107,129 @@ def test_a_winding_tube_is_cut_along_one_row_whatever_the_front_sees() -> None:
     assert len(np.unique(cuts % around)) == 1
 
 
+def coil(around: int, along: int, thickness: float, turns: float) -> lsgp.Surface:
+    """A tube along a helix of radius 0.5: on its inner side rings are far closer to each other than outside."""
+    s = np.linspace(0, 1, along + 1)
+    angle = 2 * np.pi * turns * s
+    path = np.stack([0.5 * np.cos(angle), 0.5 * np.sin(angle), 1.2 * turns * s], 1)
+    return of_quads(sweep(path, circle(thickness, around), closed=False, caps=False), around * along)
+
+
+@pytest.mark.parametrize(("around", "along", "turns"), [(10, 39, 5), (10, 159, 5), (12, 60, 2)])
+def test_a_coil_is_a_rectangle_whatever_that_costs(around: int, along: int, turns: float) -> None:
+    mesh = coil(around, along, 0.42, turns)
+    result = lsgp.parameterize(mesh, [], None, STRIPS)
+    assert not len(result.flipped) and not len(result.overlapping)
+    assert len(result.cut_edges) == along
+    assert off_any_rectangle(result, np.arange(len(mesh.triangles))) < 1e-5
+
+
+@pytest.mark.parametrize("bend", [0.1, 0.25, 0.5, 0.75])
+def test_a_bend_stretches_a_strip_as_by_formula(bend: float) -> None:
+    """Symmetric Dirichlet energy keeps the girth of a round tube and gives all of its rows one length.
+
+    A row at the angle t is 1 - k cos t long. With areas in these proportions the squared length has the mean
+    1 + 3/2 k^2, and the squared inverse 1 / sqrt(1 - k^2).
+    """
+    around, along = 32, 128
+    straight = np.linspace([0, 0, 0], [0, 0, 1], along + 1)
+    mesh = sweep(straight, circle(1, around), closed=False, caps=False)
+    turn, angle = np.meshgrid(2 * np.pi * np.arange(around) / around, np.linspace(0, np.pi, along + 1))
+    out = 1 / bend + np.cos(turn)
+    positions = np.stack([out * np.cos(angle), out * np.sin(angle), np.sin(turn)], 2).reshape(-1, 3)
+    result = lsgp.parameterize(of_quads(mesh._replace(positions=positions), around * along), [], None, STRIPS)
+    squared, inverse = 1 + 1.5 * bend**2, (1 - bend**2) ** -0.5
+    length = (squared / inverse) ** 0.25
+    expected = np.sqrt((length + squared / length) / 2)
+    assert result.distortion.l2_stretch == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_coils_are_straight_strips_and_their_excess_is_named(preset: lsgp.Preset) -> None:
+    mesh = coil(10, 100, 0.42, 5)
+    result = lsgp.auto_unwrap(mesh, preset=preset)
+    assert not len(result.cones)
+    for island in np.unique(result.island):
+        assert off_any_rectangle(result, np.flatnonzero(result.island == island)) < 1e-3
+    assert result.distortion.l2_stretch > 1.05
+    (told,) = [finding for finding in result.warnings if finding.code == "HIGH_DISTORTION"]
+    assert f"{100 * (result.distortion.l2_stretch - 1):.1f} %" in told.message
+    np.testing.assert_array_equal(np.sort(told.elements.indices), np.arange(len(mesh.triangles)))
+    straight = lsgp.auto_unwrap(of_pipe(10, 40, 0.5, False), preset=preset)
+    assert all(finding.code != "HIGH_DISTORTION" for finding in straight.warnings)
+
+
+def knot(around: int, along: int, thickness: float) -> lsgp.Surface:
+    """A trefoil on a torus, with a row of quads beside that: rings are all of about the same girth."""
+    s = 2 * np.pi * np.arange(along) / along
+    outward = np.stack([np.cos(2 * s), np.sin(2 * s), 0 * s], 1)
+    normal = np.cos(3 * s)[:, None] * outward + np.sin(3 * s)[:, None] * [0, 0, 1]
+    path = 2 * outward + normal
+    tangent = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
+    side = np.cross(tangent / np.linalg.norm(tangent, axis=1, keepdims=True), normal)
+    turn = 2 * np.pi * np.arange(around) / around
+    rings = np.cos(turn)[:, None] * normal[:, None] + np.sin(turn)[:, None] * side[:, None]
+    mesh = sweep(path, circle(thickness, around), closed=True, caps=False)
+    return of_quads(mesh._replace(positions=(path[:, None] + thickness * rings).reshape(-1, 3)), around * along)
+
+
+@pytest.mark.parametrize(("around", "along", "thickness"), [(8, 60, 0.3), (12, 160, 0.3), (12, 160, 0.4)])
+def test_a_tube_that_is_closed_on_itself_is_cut_along_one_row_and_one_ring(
+    around: int, along: int, thickness: float
+) -> None:
+    mesh = knot(around, along, thickness)
+    tubes = lsgp.find_tubes(mesh)
+    assert len(tubes.triangles) == len(mesh.triangles) and not len(tubes.borders)
+    result = lsgp.parameterize(mesh, [], None, STRIPS)
+    assert not len(result.flipped) and not len(result.overlapping)
+    ring, place = result.cut_edges // around, result.cut_edges % around
+    runs_around = ring[:, 0] == ring[:, 1]
+    assert np.count_nonzero(runs_around) == around and len(np.unique(ring[runs_around])) == 1
+    assert np.count_nonzero(~runs_around) == along and len(np.unique(place[~runs_around])) == 1
+    assert off_any_rectangle(result, np.arange(len(mesh.triangles))) < 1e-5
+
+
+def with_bar(gap: bool) -> lsgp.Surface:
+    """A block of triangles, and over it a bar of quads, 6 cubes between its corners; perhaps with a gap."""
+    filled = np.zeros((8, 3, 6), bool)
+    filled[:, :, :3] = True
+    filled[[0, -1], 1, 3:5] = True
+    filled[:, 1, 5] = True
+    filled[4, 1, 5] = not gap
+    mesh = meshes.voxels(filled)
+    height = mesh.positions[:, 2] - mesh.positions[:, 2].min()
+    ends = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], 2)
+    length = np.linalg.norm(np.diff(mesh.positions[ends], axis=2)[:, :, 0], axis=2)
+    diagonal = ends[np.arange(len(ends)), length.argmax(axis=1)]
+    hidden = pairs(diagonal[(height[mesh.triangles] > height.max() / 2 * 1.01).all(axis=1)])
+    return surface(
+        mesh, edges=np.array([e for e in meshes.edges_of(mesh.triangles).tolist() if tuple(e) not in hidden])
+    )
+
+
+def test_handles_are_tubes_of_bodies_that_are_none() -> None:
+    mesh = with_bar(gap=False)
+    tubes = lsgp.find_tubes(mesh)
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    at = (mesh.positions[mesh.triangles].mean(axis=1) - low) / (high - low) * [8, 3, 6]
+    in_bar = (at[:, 2] > 5 - 1e-9) & (at[:, 0] > 1 + 1e-9) & (at[:, 0] < 7 - 1e-9)
+    np.testing.assert_array_equal(tubes.triangles, np.flatnonzero(in_bar))
+    assert len(tubes.borders) == 2 * 4
+    assert not len(lsgp.find_tubes(with_bar(gap=True)).triangles)
+
+
+@pytest.mark.parametrize("ratio", [20, 40])
+def test_long_strips_are_divided_into_equal_pieces(ratio: int) -> None:
+    """No piece is longer than the others by more than two of its edges."""
+    around = 8 * ratio
+    height = around * 2 * np.sin(np.pi / around) / ratio
+    ring = of_quads(sweep(np.array([[0, 0, 0], [0, 0, height]]), circle(1, around), closed=False, caps=False), around)
+    result = lsgp.auto_unwrap(ring)
+    counts = np.bincount(result.island)
+    assert len(counts) > 2 and np.ptp(counts) <= 2 * 4
+    assert abs(result.distortion.l2_stretch - 1) < 1e-9
+
+
 def test_the_texture_runs_on_across_the_cut_without_turning() -> None:
     mesh, result = unwrapped(of_pipe(12, 40, 1.5, False))
     assert result.seams.sister_ratio_max < 1 + 1e-9 and result.seams.rotation_residual < 1e-9
@@ -144,8 +267,8 @@ def test_the_order_of_vertices_and_triangles_changes_nothing(seed: int) -> None:
 
 @pytest.mark.parametrize(
     "mesh",
-    [meshes.torus(), meshes.bumpy_sphere(2), meshes.cube(3), meshes.grid(5, 5), meshes.octahedron()],
-    ids=["torus", "sphere", "box", "grid", "octahedron"],
+    [meshes.bumpy_sphere(2), meshes.cube(3), meshes.grid(5, 5), meshes.octahedron()],
+    ids=["sphere", "box", "grid", "octahedron"],
 )
 def test_what_is_no_tube_has_none(mesh: Mesh) -> None:
     tubes = lsgp.find_tubes(surface(mesh))
