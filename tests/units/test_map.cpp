@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "balls.hpp"
 #include "lsgp/lsgp.hpp"
 
 namespace {
@@ -40,5 +41,22 @@ TEST_CASE("a map has the sides of its cuts related by rotations and translations
     const lsgp::Measurement measured = lsgp::measure_distortion(surface, result.corner_uv, &cones.vertices);
     CHECK(measured.seams.sister_ratio_max < 1 + 1e-9);
     CHECK(measured.flipped.empty());
+  }
+}
+
+TEST_CASE("without hard repairs a map is that with all of them, or has more defects") {
+  const lsgp::Surface ball = lsgp::uneven_ball(300);
+  const auto defects = [](const lsgp::Result& map) { return map.flipped.size() + map.wrong_angle_sums.size(); };
+  for (lsgp::Index at = 0; at < 100; at += 20) {
+    // Next to each other.
+    const lsgp::Cones cones{{at, at + 1, at + 2}, {0.3 * M_PI, 0.3 * M_PI, 1.4 * M_PI}};
+    lsgp::Options options;
+    const lsgp::Result all = lsgp::parameterize(ball, cones, options);
+    options.hard_repairs = false;
+    const lsgp::Result easy = lsgp::parameterize(ball, cones, options);
+    CHECK(defects(all) == 0);
+    const bool is_same = easy.corner_uv == all.corner_uv;
+    CHECK((is_same || defects(easy) > 0));
+    CHECK(easy.repair.iterations <= all.repair.iterations);
   }
 }

@@ -167,6 +167,43 @@ TEST_CASE("beyond the bound is what costs more than another map by more than est
   CHECK(objective.is_beyond_bound(other));
 }
 
+TEST_CASE("beyond the bound is what has defects, as cones do that only hard repairs would give a map") {
+  Objective objective{Weights{}, {}};
+  const Surface ball = uneven_ball(100);
+  const SurfaceParts parts(ball);
+  CompletedCones cones;
+  cones.placement = Placement();
+  cones.placement->mapped_l2 = std::numeric_limits<double>::infinity();
+  Options options;
+  Quality rival;
+  rival.stretch = 5;
+  CHECK_FALSE(objective.bounds_defects());
+  {
+    const Objective::Bound bound(objective, rival, Objective::Bound::Of::all);
+    CHECK(objective.bounds_defects());
+    CHECK_FALSE(objective.is_beyond_bound(objective.expected_through(parts, cones, options)));
+    options.hard_repairs = false;
+    CHECK(objective.is_beyond_bound(objective.expected_through(parts, cones, options)));
+  }
+  rival.defects = 1;
+  const Objective::Bound bound(objective, rival, Objective::Bound::Of::all);
+  CHECK_FALSE(objective.bounds_defects());
+  CHECK_FALSE(objective.is_beyond_bound(objective.expected_through(parts, cones, options)));
+}
+
+TEST_CASE("a map without creases along the lattice is expected to be on as good a lattice as the bound's") {
+  Objective objective{Weights{}, {}};
+  Quality rival, plain;
+  rival.stretch = 2;
+  rival.on_lattice = -10;
+  plain.stretch = 1;
+  const Objective::Bound bound(objective, rival, Objective::Bound::Of::all);
+  CHECK(objective.is_beyond_bound(plain));
+  CHECK_FALSE(objective.is_beyond_bound(objective.expected_along(plain)));
+  plain.stretch = 3;
+  CHECK(objective.is_beyond_bound(objective.expected_along(plain)));
+}
+
 TEST_CASE("with one cone more than the most of a bound a map is beyond it") {
   Weights weights;
   weights.cones = 0.125;
@@ -180,7 +217,7 @@ TEST_CASE("with one cone more than the most of a bound a map is beyond it") {
   const std::optional<int> most = objective.most_cones(parts);
   REQUIRE(most);
   const auto through = [&](int count) {
-    Quality expected = objective.expected_through(parts, {}, Mode::conformal);
+    Quality expected = objective.expected_through(parts, {}, {});
     expected.cones = count;
     return expected;
   };

@@ -123,7 +123,8 @@ struct Options {
   // that costs noticeable stretch. In seamless layouts on squares, in any mode: those of components without cuts, and
   // creases of hard surfaces run along the lattice.
   bool straighten = false;
-  bool repair = true;  // of flipped triangles and angles off by a turn
+  bool repair = true;        // of flipped triangles and angles off by a turn
+  bool hard_repairs = true;  // false: only of defects that few vertices around them can mend, which takes little time
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
   // Cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and that costs

@@ -45,19 +45,31 @@ MapOptions FeatureMaps::unstraightened() const {
   return out;
 }
 
+// Creases that run along the lattice take most of the time, and stretch the map.
+bool FeatureMaps::may_be_worth_it(const CompletedCones& cones, const Progress& progress) const {
+  if (!is_bounded()) return true;
+  if (objective_.is_beyond_bound(objective_.expected_through(parts_, cones, options_.of_map))) return false;
+  const Made plain = attempt([&] { return maps_(cones, unstraightened(), share_of(progress, 0, 0)); });
+  return plain && may_be_worth_it(plain, progress);
+}
+
+bool FeatureMaps::may_be_worth_it(const Made& plain, const Progress& progress) const {
+  if (!is_bounded()) return true;
+  return !objective_.is_beyond_bound(objective_.expected_along(objective_.quality(*plain, share_of(progress, 0, 0))));
+}
+
 Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryChoice& others,
                                   const Progress& progress) const {
   const auto third = [&](int number) { return share_of(progress, (number - 1) / 3.0, number / 3.0); };
   Made along;
-  if (!objective_.is_beyond_bound(objective_.expected_through(parts_, for_features, options_.of_map.mode))) {
-    along = attempt([&] { return through(for_features, third(1)); });
-  }
+  if (may_be_worth_it(for_features, third(1))) along = attempt([&] { return through(for_features, third(1)); });
   if (along && !runs_along_features(along->result)) along.reset();
   // Creases along the lattice take time: they are tried with the cones that are chosen. Those that are released run
   // along it through other cones, perhaps.
   const bool is_released = along && releases_features(along->result);
   const Made best = others.best(is_released ? options_ : unstraightened(), third(2));
   if (!best) return along;
+  if (!along && !may_be_worth_it(best, progress)) return nullptr;
   if (!along) return through(best->cones, third(3));
   return best_along(along, best, is_released ? UsualFeatures::as_far_as_they_can : UsualFeatures::not_tried, third(3));
 }
@@ -142,12 +154,15 @@ Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces
     choosing = share_of(progress, placing_for_features, 1);
   }
   const MapThrough map = maps_of(surface, given.pins);
-  const FeatureMaps maps(surface->parts, map, options, std::cref(objective));
+  MapOptions tried = options;
+  // With defects they cost more than the map that is there, and repairs that are hard take longer than all else.
+  tried.of_map.hard_repairs = !objective.bounds_defects();
+  const FeatureMaps maps(surface->parts, map, tried, std::cref(objective));
   SymmetryChoice cones(*surface, map, given.cones, given.symmetry, objective);
   const Progress untimed = share_of(choosing, 1, 1);
   const bool is_seamless = options.of_map.seamless.has_value();
-  Made best = is_seamless && for_features ? maps.best_on_lattice(*for_features, cones, choosing)
-                                          : cones.best(options, choosing);
+  Made best =
+      is_seamless && for_features ? maps.best_on_lattice(*for_features, cones, choosing) : cones.best(tried, choosing);
   if (!best) return best;
   if (is_seamless) best = maps.without_creases(best, untimed);
   tell_findings(*best, options.of_map);

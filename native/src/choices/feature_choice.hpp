@@ -39,6 +39,12 @@ class FeatureMaps {
   Made without_creases(const Made& along, const Progress& progress) const;
 
  private:
+  // Of several components one may gain, whatever the cones cost on the others.
+  bool is_bounded() const { return parts_.count() == 1 && objective_.bounds_first(); }
+  // Whether a map through these cones may cost less than the bound.
+  bool may_be_worth_it(const CompletedCones& cones, const Progress& progress) const;
+  // The same once there is one without creases along the lattice.
+  bool may_be_worth_it(const Made& plain, const Progress& progress) const;
   // Through cones for features, the best other one, or one through cones of both, by component.
   // features: of the other one.
   Made best_along(const Made& along, const Made& usual, UsualFeatures features, const Progress& progress) const;

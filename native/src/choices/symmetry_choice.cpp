@@ -92,7 +92,7 @@ std::optional<double> SymmetryChoice::expected(Kind kind) const {
       // Without cones these are the symmetric ones.
       if (alike_ && alike_->cones.vertices.empty() && made(Kind::free_cuts) != nullptr) return {};
       if (!made_.empty()) return expected_of_others(kind, 1);
-      if (!beyond_) return Objective::infinity;
+      if (!beyond_ || beyond_->defects > 0) return Objective::infinity;
       if (!alike_) return {};  // they are the same
       return cost(with_stretch_of_others(*beyond_), objective_.weights());
     case Kind::partly: return expected_of_partly();
@@ -127,7 +127,7 @@ Made SymmetryChoice::through(const CompletedCones& cones, const Progress& progre
 
 Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) {
   if (bounds_cones()) {
-    const Quality expected = objective_.expected_through(surface_.parts, cones, options_.of_map.mode);
+    const Quality expected = objective_.expected_through(surface_.parts, cones, options_.of_map);
     if (objective_.is_beyond_bound(expected)) {
       beyond_ = expected;
       return nullptr;

@@ -38,6 +38,7 @@ Placement place(Solver& solver, const Cones& given, const CompletionRules& rules
   placing.seams = options.of_map.seams;
   placing.border = options.of_map.border;
   placing.without_noise = true;
+  placing.hard_repairs = options.of_map.hard_repairs;
   placing.threads = options.of_map.threads;
   return solver.place_cones(given, placing, progress);
 }

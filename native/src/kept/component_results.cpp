@@ -28,12 +28,14 @@ bool is_same_lattice(const Seamless& a, const Seamless& b) {
 // symmetric.
 bool has_same_maps(const Options& a, const Options& b) {
   const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
-               overlaps, compact, mirrored_cuts, follow_strokes, square_share, factorization, threads] = a;
+               hard_repairs, overlaps, compact, mirrored_cuts, follow_strokes, square_share, factorization, threads] =
+      a;
   return prescription == b.prescription && unfold == b.unfold && method == b.method && seams == b.seams &&
          border == b.border && loop_turning == b.loop_turning && seamless.has_value() == b.seamless.has_value() &&
          (seamless ? is_same_lattice(*seamless, *b.seamless) : straighten == b.straighten) && mode == b.mode &&
-         stretch == b.stretch && follow_strokes == b.follow_strokes && repair == b.repair && overlaps == b.overlaps &&
-         factorization == b.factorization && (!seamless || (compact == b.compact && square_share == b.square_share));
+         stretch == b.stretch && follow_strokes == b.follow_strokes && repair == b.repair &&
+         hard_repairs == b.hard_repairs && overlaps == b.overlaps && factorization == b.factorization &&
+         (!seamless || (compact == b.compact && square_share == b.square_share));
 }
 
 bool has_same_features(const Options& a, const Options& b) {
@@ -61,11 +63,11 @@ bool is_same(const ComponentTask& a, const ComponentTask& b) {
 // strip gets no cones by their count.
 bool is_same(const PlacementInput& a, const PlacementInput& b) {
   const auto& [count, most, target, lattice, prefer_sharp, symmetric, mirror, follow_strokes, seams, border,
-               without_noise, threads] = a.options;
+               without_noise, hard_repairs, threads] = a.options;
   return is_same(a.existing, b.existing) && a.allowed == b.allowed && a.mirrored == b.mirrored &&
          is_equal(a.directions, b.directions) && count == b.options.count && most == b.options.most &&
          target == b.options.target && lattice == b.options.lattice && prefer_sharp == b.options.prefer_sharp &&
-         seams == b.options.seams && without_noise == b.options.without_noise;
+         seams == b.options.seams && without_noise == b.options.without_noise && hard_repairs == b.options.hard_repairs;
 }
 
 template <typename Entry>

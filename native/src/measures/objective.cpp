@@ -103,24 +103,35 @@ Made Objective::choose(std::vector<Candidate> candidates, const Progress& progre
   return best;
 }
 
-Quality Objective::expected_through(const SurfaceParts& parts, const CompletedCones& cones, Mode mode) const {
+Quality Objective::expected_through(const SurfaceParts& parts, const CompletedCones& cones,
+                                    const Options& options) const {
   Quality out;
   out.islands = parts.count();
   out.cones = count_by_area(parts, cones.cones.vertices);
-  const bool is_measured = cones.placement && std::isfinite(cones.placement->mapped_l2);
-  if (is_measured) out.stretch = 100 * left_of_stretch(mode) * (cones.placement->mapped_l2 - 1);
+  const double l2 = cones.placement ? cones.placement->mapped_l2 : 1;
+  if (!std::isfinite(l2)) {
+    if (!options.hard_repairs) out.defects = 1;
+  } else {
+    out.stretch = 100 * left_of_stretch(options.mode) * (l2 - 1);
+  }
   if (rival_) out.on_lattice = rival_->on_lattice;
   return out;
 }
 
+Quality Objective::expected_along(Quality of_map) const {
+  if (rival_) of_map.on_lattice = rival_->on_lattice;
+  return of_map;
+}
+
 std::optional<int> Objective::most_cones(const SurfaceParts& parts) const {
-  const double left = bound() + error_of_estimates - cost(expected_through(parts, {}, Mode::conformal), weights_);
+  const double left = bound() + error_of_estimates - cost(expected_through(parts, {}, {}), weights_);
   if (!(weights_.cones > 0) || !(left / weights_.cones < std::numeric_limits<int>::max())) return {};
   return static_cast<int>(std::max(left / weights_.cones, 0.0));
 }
 
 bool Objective::is_beyond_bound(const Quality& expected) const {
-  return rival_ && cost(expected, weights_) - error_of_estimates >= bound();
+  if (!rival_) return false;
+  return expected.defects > rival_->defects || cost(expected, weights_) - error_of_estimates >= bound();
 }
 
 void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {

@@ -58,7 +58,10 @@ class Objective {
 
   // What is expected of a map through these cones: as few islands as components, stretched as was measured when they
   // were placed, and during the lifetime of a bound on as good a lattice as its map.
-  Quality expected_through(const SurfaceParts& parts, const CompletedCones& cones, Mode mode) const;
+  Quality expected_through(const SurfaceParts& parts, const CompletedCones& cones, const Options& options) const;
+
+  // What is expected of a map with these cones and this stretch, during that lifetime on as good a lattice.
+  Quality expected_along(Quality of_map) const;
 
   // During that lifetime, the most cones of a map of one component that may cost less than the bound; none: any number.
   std::optional<int> most_cones(const SurfaceParts& parts) const;
@@ -68,6 +71,9 @@ class Objective {
 
   // Whether the bound is one of first candidates as well.
   bool bounds_first() const { return rival_ && bounds_first_; }
+
+  // Whether a map with any defect costs more than that.
+  bool bounds_defects() const { return bounds_first() && rival_->left_out == 0 && rival_->defects == 0; }
 
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);

@@ -83,7 +83,12 @@ class Mapping {
  public:
   // system: of the task's cones.
   Mapping(ComponentSystem& system, const ComponentTask& task, const Options& options, ProgressMonitor& monitor)
-      : system_(system), task_(task), options_(options), monitor_(monitor), repairs_(repairs_maps(options)) {}
+      : system_(system),
+        task_(task),
+        options_(options),
+        monitor_(monitor),
+        repairs_(repairs_maps(options)),
+        repairs_hard_(repairs_ && options.hard_repairs) {}
 
   // What `map_component` and `attempt_component` return.
   ComponentMap best(std::vector<Finding>& findings);
@@ -138,7 +143,7 @@ class Mapping {
   const ComponentTask& task_;
   const Options& options_;
   ProgressMonitor& monitor_;
-  const bool repairs_;
+  const bool repairs_, repairs_hard_;
   std::optional<RepairReport> report_;  // the defects of the first attempt, and the steps of all attempts
 };
 
@@ -153,14 +158,14 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
     FoundMap opened = find_valid_map(with_open_holes());
     if (is_better(opened, found)) found = std::move(opened);
   }
-  if (found.defects() > 0 && repairs_) {
+  if (found.defects() > 0 && repairs_hard_) {
     try {
       map_flat_metric(found);
     } catch (const SolverFailure&) {
       // What was found before remains.
     }
   }
-  if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
+  if (found.defects() > 0 && repairs_hard_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
   if (found.defects() == 0 && may_follow_strokes()) follow_strokes(found);
   if (found.defects() == 0) {
@@ -217,6 +222,7 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
   std::optional<ComponentSystem> fat_system;
   bool is_known_possible = false;
   for (const Effort effort : {Effort::local, Effort::global}) {
+    if (effort == Effort::global && !repairs_hard_) break;
     // Local repairs are first tried on the surface itself; hard cases are easier on fat triangles.
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) {

@@ -72,9 +72,10 @@ VerifiedChoice VerifiedPlacement::place() {
   const bool is_automatic = !chooser_.options().count;
   if (is_automatic && is_small() && out.cones.predicted_l2 <= unreachable_l2) move_cones(MovedAngles::bounded, out);
   // Unwrapping would repair it anyway.
-  const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
+  const bool is_left =
+      chooser_.options().hard_repairs && !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
   if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);
-  if (is_automatic) take_other_stage(out);
+  if (is_automatic && chooser_.options().hard_repairs) take_other_stage(out);
   return out;
 }
 
@@ -102,7 +103,7 @@ VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
 // Repairs take long; a map with about as many defects as one that they left with high stretch will not be better, and
 // one that is tangled all over, as on rough surfaces, gets high stretch at best.
 bool VerifiedPlacement::is_worth_repairing(const VerifiedChoice& choice) const {
-  if (!is_worth_trying(choice.cones)) return false;
+  if (!chooser_.options().hard_repairs || !is_worth_trying(choice.cones)) return false;
   if (is_small()) return true;
   if (is_tangled(choice.map)) return false;
   const bool promises_more =
@@ -407,7 +408,8 @@ void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
   if (!chooses_angles() || count == 0 || count > most_one_by_one) return;
   // A valid map takes no repairs.
   if (!best.map.is_valid() && !is_worth_trying(best.cones)) return;
-  const auto repairs = best.map.is_off() || is_small() ? MapTrial::Repairs::all : MapTrial::Repairs::easy;
+  const bool is_hard = best.map.is_off() || is_small();
+  const auto repairs = is_hard && chooser_.options().hard_repairs ? MapTrial::Repairs::all : MapTrial::Repairs::easy;
   take_least_distortion(repairs, best);
 }
 
