@@ -44,7 +44,7 @@ Array<IslandExtent> extents_of_moved(const CornerUv& corner_uv, const std::vecto
   }
   Array<IslandExtent> out;
   for (Index i = 0; i < island_count; ++i) {
-    const IslandLock lock = options.locks.empty() ? IslandLock{} : options.locks[i];
+    const IslandLock lock = options.locks.empty() ? IslandLock{} : element(options.locks, i);
     const double length = std::min(std::max(boxes[i].right - boxes[i].left, boxes[i].top - boxes[i].bottom),
                                    std::numeric_limits<double>::max());
     if (!lock.place && length > 0) out.push_back({length, options.fill && !lock.scale});
