@@ -31,7 +31,6 @@ _ROUNDING = 1e-12
 # Units in the last place of single precision that an island of some shape spans: less than half a texel of the largest
 # textures, 65536, at the far end of the square.
 _LEAST_UNITS = 100
-_TINY = "ISLANDS_TINY"
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,7 +264,7 @@ def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
 
 def with_tiny_findings(result: Result) -> Result:
     """A result that warns of the islands that are tiny in its layout, and no longer of others."""
-    others = [finding for finding in result.warnings if finding.code != _TINY]
+    others = [finding for finding in result.warnings if finding.code != "ISLANDS_TINY"]
     return replace(result, warnings=[*others, *tiny_findings(result.corner_uv, result.island)])
 
 
@@ -279,7 +278,7 @@ def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
         "coordinates are stored in single precision, as in most files and programs. Unwrap these parts separately, or "
         "delete them if they are debris."
     )
-    return [Finding(_TINY, message, _triangles_of(tiny, island))]
+    return [Finding("ISLANDS_TINY", message, _triangles_of(tiny, island))]
 
 
 def _of_islands(count: int, total: int) -> str:
