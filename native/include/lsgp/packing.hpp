@@ -56,9 +56,10 @@ struct PackingOptions {
 
 // The texture coordinates of islands, each moved as a whole by a turn, a translation and a scale, so that they keep
 // their margins.  island: (m) the number of each triangle's island, -1: it does not move. WRONG_PARAMETER, with the
-// triangles of the islands concerned: coordinates that are not finite, margins without room, what does not fit.
-// packed_quickly: the result of the same call with the effort `quick`, if it is known, so that it is not computed
-// again; with `fill`, one tile, and without locks or blocks.
+// triangles of the islands concerned: coordinates that are not finite, margins without room, what does not fit, margins
+// and areas that leave numbers no digits for the shapes of islands. packed_quickly: the result of the same call with
+// the effort `quick`, if it is known, so that it is not computed again; with `fill`, one tile, and without locks or
+// blocks.
 LSGP_API CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& island,
                                const PackingOptions& options = {}, const Progress& progress = {},
                                const CornerUv* packed_quickly = nullptr);

@@ -152,7 +152,8 @@ def pack_islands(
         each island's box begins at the corner of a block, and no two islands share one. At most 8192 fit side by side.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised.
     Raises InputError: WRONG_PARAMETER, also where margins leave no room, islands do not fit, or locked ones lie outside
-    the area or overlap; it names them.
+    the area or overlap; it names them. Where margins or the area's place leave numbers no digits for the shapes of
+    islands, it says up to which they would.
     """
     arguments.require_callable(progress)
     island = arguments.islands("island", island)

@@ -182,15 +182,12 @@ PerHalfedge<Index> join_sheets(const Surface& surface, const EdgeTable& edges, c
   return twin;
 }
 
-// Joins triangles of one-sided parts at edges of three or more triangles: as sheets run on once their seams are open.
-void join_one_sided(const Surface& surface, const EdgeTable& edges, const EdgeMarks& marks, const OpenSeams& open_seams,
-                    const PerTriangle<char>& skip, PerHalfedge<Index>& twin) {
-  const Orientation parts = orient(surface, skip, twin);
-  if (std::all_of(parts.orientable.begin(), parts.orientable.end(), [](char is) { return is != 0; })) return;
+// Joins triangles of one-sided parts at edges of three or more triangles: as they are once seams are open.
+void join_one_sided(const EdgeTable& edges, const Orientation& parts, const PerHalfedge<Index>& opened,
+                    PerHalfedge<Index>& twin) {
   const auto is_one_sided = [&](Index h) {
     return parts.component[h / 3] != none && !parts.orientable[parts.component[h / 3]];
   };
-  const PerHalfedge<Index> opened = join_sheets(surface, edges, marks, open_seams, skip);
   for (Index edge = 0; edge < edges.count(); ++edge) {
     if (edges.halfedge_count(edge) < 3) continue;
     for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
@@ -207,7 +204,12 @@ PerHalfedge<Index> join_halfedges(const Surface& surface, const EdgeTable& edges
   if (open_seams.empty()) return twin;
   bool any_crowded = false;
   for (Index edge = 0; edge < edges.count() && !any_crowded; ++edge) any_crowded = edges.halfedge_count(edge) > 2;
-  if (any_crowded) join_one_sided(surface, edges, marks, open_seams, skip, twin);
+  if (any_crowded) {
+    const Orientation parts = orient(surface, skip, twin);
+    const bool all_orientable =
+        std::all_of(parts.orientable.begin(), parts.orientable.end(), [](char is) { return is != 0; });
+    if (!all_orientable) join_one_sided(edges, parts, join_sheets(surface, edges, marks, open_seams, skip), twin);
+  }
   for (Index edge = 0; edge < edges.count(); ++edge) {
     if (!marks.seam[edge]) continue;
     for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
