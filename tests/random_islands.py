@@ -173,7 +173,8 @@ def layout_faults(given: Kit, uv: FloatArray, margin: float, *, fill: bool = Tru
     extent = float(np.ptp(uv.reshape(-1, 2), axis=0).max())
     rounding = ROUNDING * max(extent, float(np.abs(uv).max()))
     moves = similarities(given.corner_uv, uv, given.island)
-    if moves.worst.max() > ROUNDING:
+    # Tiny islands keep the digits that are left where they lie.
+    if moves.worst.max() > ROUNDING + 2 * np.finfo(float).eps * float(np.abs(uv).max()) / max(extent, 1e-300):
         faults.append(f"island {moves.worst.argmax()} is distorted by {moves.worst.max():.2g} of the layout")
     sizes = np.array([np.ptp(uv[given.island == i], axis=(0, 1)).max() for i in range(len(moves.factor))])
     scale = np.abs(moves.factor[sizes > TELLABLE * extent])

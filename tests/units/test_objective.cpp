@@ -191,17 +191,18 @@ TEST_CASE("beyond the bound is what has defects, as cones do that only hard repa
   CHECK_FALSE(objective.is_beyond_bound(objective.expected_through(parts, cones, options)));
 }
 
-TEST_CASE("a map without creases along the lattice is expected to be on as good a lattice as the bound's") {
+TEST_CASE("a map with defects bounds nothing but those with further ones") {
   Objective objective{Weights{}, {}};
-  Quality rival, plain;
-  rival.stretch = 2;
-  rival.on_lattice = -10;
-  plain.stretch = 1;
+  Quality rival, dearer;
+  rival.defects = 1;
+  dearer.stretch = 100;
   const Objective::Bound bound(objective, rival, Objective::Bound::Of::all);
-  CHECK(objective.is_beyond_bound(plain));
-  CHECK_FALSE(objective.is_beyond_bound(objective.expected_along(plain)));
-  plain.stretch = 3;
-  CHECK(objective.is_beyond_bound(objective.expected_along(plain)));
+  CHECK_FALSE(objective.is_beyond_bound(dearer));
+  dearer.defects = 2;
+  CHECK(objective.is_beyond_bound(dearer));
+  dearer.defects = 0;
+  dearer.left_out = 1;
+  CHECK(objective.is_beyond_bound(dearer));
 }
 
 TEST_CASE("with one cone more than the most of a bound a map is beyond it") {

@@ -124,7 +124,8 @@ struct Options {
   // creases of hard surfaces run along the lattice.
   bool straighten = false;
   bool repair = true;        // of flipped triangles and angles off by a turn
-  bool hard_repairs = true;  // false: only of defects that few vertices around them can mend, which takes little time
+  // False: only of defects that few vertices around them can mend, which takes little time. Not an option of Python.
+  bool hard_repairs = true;
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
   // Cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and that costs

@@ -114,7 +114,10 @@ Made best_at_creases(BorderedSurfaces& surfaces, const CreaseBorders& creases, c
     }
     try {
       best = make(surface, share_of(progress, 0, trying));
-      if (!best) return ended;
+      if (!best) {
+        tell(progress, 1);
+        return ended;
+      }
     } catch (const Error& error) {
       if (error.code() == Code::cancelled) throw;
       if (ended) return ended;

@@ -130,8 +130,11 @@ Array<Index> AlongLattice::promising(MadeMap& usual, const Array<Index>& chosen,
   const PerComponent<double> stretches = stretches_on(parts_, usual.result);
   const PerComponent<double> along = shares(usual, creases({&usual}));
   const PerComponent<Index> solved = solved_on(parts_, usual.result), all = triangles_on(parts_);
-  return if_large(those_of(
-      chosen, [&](Index i) { return solved[i] < all[i] || stretches[i] > most_l2 || !has_direction(along[i]); }));
+  const PerComponent<Index> defects = defects_on(parts_, usual.result);
+  const auto is_promising = [&](Index i) {
+    return defects[i] > 0 || solved[i] < all[i] || stretches[i] > most_l2 || !has_direction(along[i]);
+  };
+  return if_large(those_of(chosen, is_promising), defects);
 }
 
 Array<Index> AlongLattice::gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) {
@@ -144,20 +147,31 @@ Array<Index> AlongLattice::gaining(MadeMap& bordered, MadeMap& usual, const Arra
   };
   const PerComponent<double> worths = worth(bordered), others = worth(usual);
   const PerComponent<Index> solved = solved_on(parts_, bordered.result), before = solved_on(parts_, usual.result);
-  return if_large(those_of(chosen, [&](Index i) {
-    return solved[i] != before[i] ? solved[i] > before[i] : worths[i] >= others[i] + worth_of_running_on;
-  }));
+  const PerComponent<Index> defects = defects_on(parts_, bordered.result), flawed = defects_on(parts_, usual.result);
+  const auto gains = [&](Index i) {
+    if (solved[i] != before[i]) return solved[i] > before[i];
+    if (defects[i] != flawed[i]) return defects[i] < flawed[i];
+    return worths[i] >= others[i] + worth_of_running_on;
+  };
+  return if_large(those_of(chosen, gains), flawed);
+}
+
+bool is_outdone_at_creases(const Result& usual, const Quality& ended) {
+  const double l2 = usual.distortion.l2_stretch;
+  const double least = 100 * (l2 - 1) + least_cost_on_lattice(usual);
+  return l2 > most_l2 && ended.stretch + ended.on_lattice + in_hundredths(worth_of_running_on) <= least;
 }
 
 bool AlongLattice::may_replace(MadeMap& bordered, MadeMap& usual, const Progress&) {
   return is_as_good(bordered.result, usual.result, Objective::infinity);
 }
 
-Array<Index> AlongLattice::if_large(const Array<Index>& components) const {
+Array<Index> AlongLattice::if_large(const Array<Index>& components, const PerComponent<Index>& defects) const {
   double area = 0;
   for (const Index i : components) area += parts_.areas()[i];
   const bool is_large = area >= least_area * parts_.area();
-  return is_large || parts_.surface().triangles.rows() <= small_mesh ? components : Array<Index>();
+  if (is_large || parts_.surface().triangles.rows() <= small_mesh) return components;
+  return those_of(components, [&](Index i) { return defects[i] > 0; });
 }
 
 VertexPairs AlongLattice::creases(const Array<const MadeMap*>& maps) const {

@@ -79,6 +79,10 @@ class LowerCost : public BorderGain {
   PerComponent<double> seen_;  // what is seen of all borders costs
 };
 
+// Whether a seamless map of one component, even if all its creases ran along the lattice at its stretch, would be
+// replaced by the one that ends at them, as `AlongLattice` decides.
+bool is_outdone_at_creases(const Result& usual, const Quality& ended);
+
 // Seamless maps whose marked features, or creases if none are marked, run along the lattice, at little stretch and with
 // large tiles.
 class AlongLattice : public BorderGain {
@@ -86,18 +90,20 @@ class AlongLattice : public BorderGain {
   // parts: of the surface without the borders.
   AlongLattice(const SurfaceParts& parts, const PossibleBorders& borders) : parts_(parts), borders_(borders) {}
 
-  // Those many of whose creases do not, or that are stretched by more than a tenth or left out, if they are not small.
+  // Those many of whose creases do not, or that are stretched by more than a tenth or left out, if they are not small;
+  // those with defects in any case.
   Array<Index> promising(MadeMap& usual, const Array<Index>& chosen, const Progress& progress) override;
 
-  // Where more of them has a map, or as much, if that is worth that the texture does not run on across their creases;
-  // if they are not small.
+  // Where more of them has a map, or as much with fewer defects, or with as few, if that is worth that the texture does
+  // not run on across their creases; if they are not small, but for those with defects.
   Array<Index> gaining(MadeMap& bordered, MadeMap& usual, const Array<Index>& chosen) override;
 
   // Where all have gained, and it has no further defects.
   bool may_replace(MadeMap& bordered, MadeMap& usual, const Progress& progress) override;
 
  private:
-  Array<Index> if_large(const Array<Index>& components) const;
+  // These if they are large together, otherwise those with defects.
+  Array<Index> if_large(const Array<Index>& components, const PerComponent<Index>& defects) const;
   // The marked features, or the possible borders and the creases found in any of these maps.
   VertexPairs creases(const Array<const MadeMap*>& maps) const;
   // Of the length of each component's edges what runs along the lattice; 1 without any.

@@ -50,12 +50,7 @@ bool FeatureMaps::may_be_worth_it(const CompletedCones& cones, const Progress& p
   if (!is_bounded()) return true;
   if (objective_.is_beyond_bound(objective_.expected_through(parts_, cones, options_.of_map))) return false;
   const Made plain = attempt([&] { return maps_(cones, unstraightened(), share_of(progress, 0, 0)); });
-  return plain && may_be_worth_it(plain, progress);
-}
-
-bool FeatureMaps::may_be_worth_it(const Made& plain, const Progress& progress) const {
-  if (!is_bounded()) return true;
-  return !objective_.is_beyond_bound(objective_.expected_along(objective_.quality(*plain, share_of(progress, 0, 0))));
+  return plain && !is_outdone(*plain);
 }
 
 Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryChoice& others,
@@ -69,7 +64,7 @@ Made FeatureMaps::best_on_lattice(const CompletedCones& for_features, SymmetryCh
   const bool is_released = along && releases_features(along->result);
   const Made best = others.best(is_released ? options_ : unstraightened(), third(2));
   if (!best) return along;
-  if (!along && !may_be_worth_it(best, progress)) return nullptr;
+  if (!along && is_outdone(*best)) return nullptr;
   if (!along) return through(best->cones, third(3));
   return best_along(along, best, is_released ? UsualFeatures::as_far_as_they_can : UsualFeatures::not_tried, third(3));
 }
@@ -155,8 +150,8 @@ Made best_map(const std::shared_ptr<BorderedSurface>& surface, const GivenPlaces
   }
   const MapThrough map = maps_of(surface, given.pins);
   MapOptions tried = options;
-  // With defects they cost more than the map that is there, and repairs that are hard take longer than all else.
-  tried.of_map.hard_repairs = !objective.bounds_defects();
+  // With defects they cost more than the map that is there, and hard repairs take longer than all else.
+  tried.of_map.hard_repairs = options.of_map.hard_repairs && !objective.bounds_defects();
   const FeatureMaps maps(surface->parts, map, tried, std::cref(objective));
   SymmetryChoice cones(*surface, map, given.cones, given.symmetry, objective);
   const Progress untimed = share_of(choosing, 1, 1);

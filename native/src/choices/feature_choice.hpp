@@ -2,6 +2,7 @@
 // The best map of a surface whose borders are given.
 #pragma once
 
+#include "choices/border_gain.hpp"
 #include "choices/symmetry_choice.hpp"
 #include "measures/map_comparison.hpp"
 
@@ -41,10 +42,12 @@ class FeatureMaps {
  private:
   // Of several components one may gain, whatever the cones cost on the others.
   bool is_bounded() const { return parts_.count() == 1 && objective_.bounds_first(); }
-  // Whether a map through these cones may cost less than the bound.
+  // Whether a map through these cones may be better than that of the bound.
   bool may_be_worth_it(const CompletedCones& cones, const Progress& progress) const;
-  // The same once there is one without creases along the lattice.
-  bool may_be_worth_it(const Made& plain, const Progress& progress) const;
+  // Whether that is better than a map will be once its creases run along the lattice.
+  bool is_outdone(const MadeMap& plain) const {
+    return is_bounded() && is_outdone_at_creases(plain.result, *objective_.rival());
+  }
   // Through cones for features, the best other one, or one through cones of both, by component.
   // features: of the other one.
   Made best_along(const Made& along, const Made& usual, UsualFeatures features, const Progress& progress) const;

@@ -37,9 +37,8 @@ double worth(double share, double l2_stretch, double tile_size, bool is_uneven) 
          features_for_tiles * (std::log2(tile_size) - (is_uneven ? 1 : 0));
 }
 
-double cost_of_layout(const Result& result, bool is_uneven) {
-  if (!result.seamless) return 0;
-  return -100 * worth(feature_share(result), 0, result.seamless->tile_size, is_uneven) / features_for_stretch;
+double cost_of_layout(const Result& result, double share, bool is_uneven) {
+  return result.seamless ? -in_hundredths(worth(share, 0, result.seamless->tile_size, is_uneven)) : 0;
 }
 
 // The feature_share of each component, 0 without features.
@@ -108,9 +107,15 @@ double worth_along_features(const Result& result) {
   return seamless_worth(feature_share(result), result.distortion.l2_stretch, result);
 }
 
-double cost_on_lattice(const Result& result) { return cost_of_layout(result, has_uneven_tiles(result)); }
+double cost_on_lattice(const Result& result) {
+  return cost_of_layout(result, feature_share(result), has_uneven_tiles(result));
+}
 
-double cost_on_even_lattice(const Result& result) { return cost_of_layout(result, false); }
+double least_cost_on_lattice(const Result& result) { return cost_of_layout(result, 1, has_uneven_tiles(result)); }
+
+double in_hundredths(double worth) { return 100 * worth / features_for_stretch; }
+
+double cost_on_even_lattice(const Result& result) { return cost_of_layout(result, feature_share(result), false); }
 
 bool runs_along_axes(const SurfaceParts& parts, const Result& result, Index a, Index b) {
   constexpr double rounding = 1e-6;  // of the length of an edge along an axis

@@ -45,7 +45,13 @@ double worth_along_features(const Result& result);
 // What a seamless layout is worth but for its stretch, as a cost in hundredths of L2 stretch; 0 for other ones.
 double cost_on_lattice(const Result& result);
 
-// The same as if tiles were as large on all components.
+// The same as if all features ran along the lattice.
+double least_cost_on_lattice(const Result& result);
+
+// A worth as that cost.
+double in_hundredths(double worth);
+
+// The cost as if tiles were as large on all components.
 double cost_on_even_lattice(const Result& result);
 
 // Whether an edge of the surface is parallel to u or v, on one of its sides at least.

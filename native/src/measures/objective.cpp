@@ -118,11 +118,6 @@ Quality Objective::expected_through(const SurfaceParts& parts, const CompletedCo
   return out;
 }
 
-Quality Objective::expected_along(Quality of_map) const {
-  if (rival_) of_map.on_lattice = rival_->on_lattice;
-  return of_map;
-}
-
 std::optional<int> Objective::most_cones(const SurfaceParts& parts) const {
   const double left = bound() + error_of_estimates - cost(expected_through(parts, {}, {}), weights_);
   if (!(weights_.cones > 0) || !(left / weights_.cones < std::numeric_limits<int>::max())) return {};
@@ -131,7 +126,9 @@ std::optional<int> Objective::most_cones(const SurfaceParts& parts) const {
 
 bool Objective::is_beyond_bound(const Quality& expected) const {
   if (!rival_) return false;
-  return expected.defects > rival_->defects || cost(expected, weights_) - error_of_estimates >= bound();
+  const auto flaws = std::tie(expected.left_out, expected.defects),
+             of_rival = std::tie(rival_->left_out, rival_->defects);
+  return flaws != of_rival ? of_rival < flaws : cost(expected, weights_) - error_of_estimates >= bound();
 }
 
 void Objective::note(const std::string& name, const Quality& quality, double estimate, bool is_best) {

@@ -60,9 +60,6 @@ class Objective {
   // were placed, and during the lifetime of a bound on as good a lattice as its map.
   Quality expected_through(const SurfaceParts& parts, const CompletedCones& cones, const Options& options) const;
 
-  // What is expected of a map with these cones and this stretch, during that lifetime on as good a lattice.
-  Quality expected_along(Quality of_map) const;
-
   // During that lifetime, the most cones of a map of one component that may cost less than the bound; none: any number.
   std::optional<int> most_cones(const SurfaceParts& parts) const;
 
@@ -71,6 +68,9 @@ class Objective {
 
   // Whether the bound is one of first candidates as well.
   bool bounds_first() const { return rival_ && bounds_first_; }
+
+  // The map of the bound.
+  const std::optional<Quality>& rival() const { return rival_; }
 
   // Whether a map with any defect costs more than that.
   bool bounds_defects() const { return bounds_first() && rival_->left_out == 0 && rival_->defects == 0; }
@@ -113,7 +113,10 @@ class Objective {
     bool is_better_than(const Rank& best) const;
   };
 
-  double bound() const { return rival_ ? cost(*rival_, weights_) : infinity; }
+  // Nothing outweighs what a map lacks.
+  double bound() const {
+    return rival_ && rival_->left_out == 0 && rival_->defects == 0 ? cost(*rival_, weights_) : infinity;
+  }
 
   const Weights weights_;
   const SquareShare share_;

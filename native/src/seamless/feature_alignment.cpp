@@ -21,7 +21,7 @@ constexpr int most_attempts = 24;              // to align lines
 constexpr Index attempted_triangles = 200000;  // in all attempts together; the first is always made
 constexpr Index retried_triangles = 40000;     // in those for what was released
 constexpr int most_fits = 300;                 // to find lines that contradict each other
-constexpr Index fitted_triangles = 200000;     // in all of them together
+constexpr Index fitted_triangles = 20000;      // in all of them together; ten times as many align no more on 45 models
 constexpr double least_length = 0.1;           // of an edge, relative to the map without lines, that contradicts none
 constexpr double compatible_share = 0.01;      // that lines may flip which contradict none
 
