@@ -260,8 +260,9 @@ def find_tubes(surface: Surface, cones: ArrayLike = (), *, progress: Progress | 
     follow, or where the cone that a ring lies on develops into more than half a disk; one that is closed on itself, as
     a knot is, ends nowhere. A quad is two triangles on both sides of an edge that is not among `Surface.edges`; if that
     is None, on both sides of the longest edge of both. Handles and what is closed on itself are tubes only if their
-    strips would be stretched by no more than 1.05. Components with cones or marked seams have none, but for tubes that
-    seams open from one end to the other.
+    strips would be stretched by no more than 1.05, the latter of even girth; components of 30,000 triangles or more are
+    not searched for handles. Components with cones or marked seams have none, but for tubes that seams open from one
+    end to the other.
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
     arguments.require_callable(progress)

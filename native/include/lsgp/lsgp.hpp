@@ -73,9 +73,10 @@ LSGP_API std::vector<VertexPairs> crease_borders_by(const Surface& surface, cons
 
 // The tubes of components that consist of them for the most part, and handles of others: between their borders they
 // unfold into strips with `BorderMode::strips`. Handles and what is closed on itself, as a knot is, are tubes only if
-// strips of them would hardly be stretched. A quad is two triangles on both sides of an edge that is not among
-// `Surface::edges`; where these are all, on both sides of the longest edge of both. Components with cones or seams have
-// none, but for tubes that seams open from one end to the other.
+// strips of them would be stretched by no more than `Tubes::most_l2`, and closed ones only of even girth; components of
+// 30,000 triangles or more are not searched for handles. A quad is two triangles on both sides of an edge that is not
+// among `Surface::edges`; where these are all, on both sides of the longest edge of both. Components with cones or
+// seams have none, but for tubes that seams open from one end to the other.
 LSGP_API Tubes find_tubes(const Surface& surface, const std::vector<Index>& cones = {}, const Progress& progress = {});
 
 // Cones, with angles, with which features and, if asked for, creases of closed hard surfaces can run along the lines of

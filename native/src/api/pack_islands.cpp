@@ -231,7 +231,7 @@ CornerUv pack_islands(const CornerUv& corner_uv, const std::vector<Index>& islan
   ProgressMonitor monitor(progress, seconds);
   monitor.advance(0);
   const Index island_count = require_valid(corner_uv, island, given);
-  require_digits(corner_uv, island, given);
+  found_with_room(island, [&] { require_digits(corner_uv, island, given); });
   if (packed_quickly != nullptr) {
     require_valid(*packed_quickly, island, given, "packed_quickly");
     if (given.effort == PackingEffort::quick) {

@@ -108,9 +108,10 @@ Result map_components(const KnownSurface& known, const MapRequest& request, cons
     {
       const ProgressMonitor::Stage stage(monitor, "geometry");
       kept.geometry_of(i, result.warnings);
-      if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
       const MetricMesh metric{component.mesh, kept.geometry(i)};
       if (task.may_be_strip && tube_shape(metric) == TubeShape::even) become_strip(work.tasks[i]);
+      const bool is_closed_strip = task.is_strip && component.mesh.closed();  // cut along a row and a ring of its own
+      if (options.mirrored_cuts && !is_closed_strip) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
       if (work.tasks[i].has_directed_borders) {
         free_stretched_borders(metric, monitor, work.tasks[i]);
       }

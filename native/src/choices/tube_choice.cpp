@@ -93,15 +93,29 @@ PerComponent<char> creased_rings(const SurfaceParts& parts, const CreaseBorders&
   return out;
 }
 
-// Without handles that are worth less than the islands they become.
+// Without handles each of which is worth less than the island it becomes.
 void leave_out_small_handles(const SurfaceParts& parts, const Weights& weights, Tubes& tubes) {
   const PerTriangle<char> in_tubes = triangles_in(tubes, parts);
-  const PerComponent<double> area = areas_of_tubes(parts, in_tubes);
-  PerComponent<char> is_kept = consist_of_tubes(parts, in_tubes);
-  for (Index i = 0; i < parts.count(); ++i) {
-    is_kept[i] = is_kept[i] || weights.strips * area[i] > (weights.islands + error_of_estimates) * parts.area();
+  const PerComponent<char> consists = consist_of_tubes(parts, in_tubes);
+  Surface ending = parts.surface();
+  ending.borders = joined(ending.borders, tubes.borders);
+  const SurfaceParts pieces{std::cref(ending)};
+  const PerComponent<double> area = areas_of_tubes(pieces, in_tubes);
+  const double least = (weights.islands + error_of_estimates) * parts.area();
+  PerTriangle<char> is_kept(in_tubes.size(), 0);
+  std::vector<Index> kept;
+  for (const Index f : tubes.triangles) {
+    const Index part = parts.of_triangle()[f], piece = pieces.of_triangle()[f];
+    is_kept[f] = part != none && (consists[part] || (piece != none && weights.strips * area[piece] > least));
+    if (is_kept[f]) kept.push_back(f);
   }
-  keep_on(parts, is_kept, tubes);
+  tubes.triangles = std::move(kept);
+  const VertexPairs& all = tubes.borders;
+  tubes.borders = VertexPairs(filtered(all, [&](Eigen::Index e) {
+    bool is_end = false;
+    parts.for_each_side(all(e, 0), all(e, 1), [&](Index side) { is_end = is_end || is_kept[side / 3]; });
+    return is_end;
+  }));
 }
 
 // Of the area, what is in tubes.
@@ -132,13 +146,38 @@ double least_cost(const BorderedSurfaces& surfaces, const Weights& weights) {
   return cost(least, weights);
 }
 
+// Whether each component is laid out without cones, and continues across its cuts without a turn, but for one by right
+// angles, as what tapers does not.
+PerComponent<char> run_on_across_cuts(const SurfaceParts& parts, const Result& result) {
+  constexpr double rounding = 0.01;  // radians
+  PerComponent<char> out(parts.count(), 1);
+  const PerComponent<Index> cones = counts_on(parts, result.cones);
+  for (Index i = 0; i < parts.count(); ++i) out[i] = cones[i] == 0;
+  const auto direction = [&](Index side) {
+    const Eigen::Index next = side % 3 == 2 ? side - 2 : side + 1;
+    const Eigen::RowVector2d along = result.corner_uv.row(next) - result.corner_uv.row(side);
+    return std::atan2(along[1], along[0]);
+  };
+  for (Eigen::Index e = 0; e < result.cut_edges.rows(); ++e) {
+    std::vector<Index> sides;
+    parts.for_each_side(result.cut_edges(e, 0), result.cut_edges(e, 1), [&](Index side) { sides.push_back(side); });
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      const Index part = parts.of_triangle()[sides[i] / 3];
+      if (part == none || parts.of_triangle()[sides[i - 1] / 3] != part) continue;
+      const double turn = std::remainder(direction(sides[i]) - direction(sides[i - 1]), M_PI / 2);
+      if (!(std::abs(turn) < rounding)) out[part] = 0;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Tubes tubes_for(const Surface& surface, const GivenCones& given, const CreaseBorders& creases,
-                const MapOptions& options, const Pins& pins, const Progress& progress) {
+                const MapOptions& options, const Progress& progress) {
   if (options.of_map.seamless) return {};
   const bool is_plain = options.of_map.border == BorderMode::free && options.of_map.loop_turning.empty();
-  if (!is_plain || given.count || !pins.corners.empty()) return {};
+  if (!is_plain || given.count) return {};
   Tubes out = find_tubes(surface, given.cones.vertices, share_of(progress, 0, 0));
   if (out.triangles.empty()) return out;
   const SurfaceParts parts{std::cref(surface)};
@@ -206,16 +245,16 @@ Made best_of_tubes(const Surface& surface, const EndsOfSurface& ends, const Make
 }
 
 void tell_stretched_strips(MadeMap& made) {
-  constexpr double most_l2 = 1.05;  // what placed cones may leave
   if (made.options.of_map.border != BorderMode::strips || !made.surface->in_tubes) return;
   const SurfaceParts& parts = made.surface->parts;
   const PerTriangle<char>& in_tubes = *made.surface->in_tubes;
   const PerComponent<double> stretches = stretches_on(parts, made.result);
+  const PerComponent<char> are_rectangles = run_on_across_cuts(parts, made.result);
   double most = 0;
   std::vector<Index> triangles;
   for (Index f = 0; f < static_cast<Index>(in_tubes.size()); ++f) {
     const Index part = parts.of_triangle()[f];
-    if (!in_tubes[f] || part == none || !(stretches[part] > most_l2)) continue;
+    if (!in_tubes[f] || part == none || !are_rectangles[part] || !(stretches[part] > Tubes::most_l2)) continue;
     most = std::max(most, stretches[part]);
     triangles.push_back(f);
   }

@@ -10,11 +10,11 @@
 namespace lsgp {
 
 // The tubes of a surface, which may become strips. None in seamless layouts, whose cuts are to be invisible, and none
-// with straight or turning borders, pins or a number of cones; where seams alone are cut, those that these open. None
-// on closed components with creases that end nowhere, such as washers, which unfold between these. progress: without
-// time of its own.  Throws what `find_tubes` throws.
+// with straight or turning borders or a number of cones; where seams alone are cut, those that these open. None on
+// closed components with creases that end nowhere, such as washers, which unfold between these. progress: without time
+// of its own.  Throws what `find_tubes` throws.
 Tubes tubes_for(const Surface& surface, const GivenCones& given, const CreaseBorders& creases,
-                const MapOptions& options, const Pins& pins, const Progress& progress);
+                const MapOptions& options, const Progress& progress);
 
 struct EndsOfSurface {
   const CreaseBorders& creases;

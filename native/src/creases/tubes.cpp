@@ -12,6 +12,8 @@
 #include "creases/face_quads.hpp"
 #include "creases/opened_tube.hpp"
 #include "cut/cut_cost.hpp"
+#include "lsgp/tubes.hpp"
+#include "mesh/large_surface.hpp"
 
 namespace lsgp {
 
@@ -124,6 +126,9 @@ Index Rings::quad_across(Index halfedge) const {
   return at == none ? none : at / 4;
 }
 
+// girths: the least and the largest.
+bool are_even(const std::array<double, 2>& girths) { return girths[1] <= most_even * girths[0]; }
+
 // A stack of rings and the halfedges of its ends.
 struct Tube {
   Array<Index> rings, quads;
@@ -141,14 +146,17 @@ class TubeSearch {
       : surface_(surface), quads_(find_quads(surface)), rings_(surface.mesh, quads_) {}
 
   const Array<Quad>& quads() const { return quads_; }
-  // Tubes that share no quad, the largest first. Those that are closed on themselves are tubes only if they are strips
-  // as well as placed cones leave other maps: what goes around a hole is no rope.
+  // Tubes that share no quad: those that are closed on themselves, the most even first, then the others, the largest
+  // first. Closed ones are tubes only if they are even and strips as well as placed cones leave other maps: what goes
+  // around a hole is no rope.
   Array<Tube> find() const;
+  // Whether it is a rectangle nearly without stretch.
+  bool is_strip(const Tube& tube) const { return stretch_as_rectangle(tube) <= Tubes::most_l2; }
+
+ private:
   // The L2 stretch of a rectangle whose rows and columns are as wide as those of a tube in the mean. In a bend of
   // constant radius R a round tube of radius r has (1 + 3/2 (r / R)^2)^(1/4).
   double stretch_as_rectangle(const Tube& tube) const;
-
- private:
   double area_of(const Ring& ring) const;
   double girth(const Ring& ring, int rim) const;
   bool is_steep(const Ring& ring) const;
@@ -237,7 +245,7 @@ Array<Tube> TubeSearch::find() const {
       Index ring = r;
       int rim = direction;
       while (const auto beyond = rings_.across(ring, rim)) {
-        tube.is_closed |= beyond->first == r;
+        tube.is_closed |= *beyond == std::pair(r, 1 - direction);  // not where a rim is folded onto itself
         if (is_used[beyond->first]) break;
         ring = beyond->first;
         rim = 1 - beyond->second;
@@ -256,13 +264,14 @@ Array<Tube> TubeSearch::find() const {
       tube.area += area_of(all[ring]);
       tube.quads.insert(tube.quads.end(), all[ring].quads.begin(), all[ring].quads.end());
     }
-    if (tube.is_closed && !(stretch_as_rectangle(tube) <= most_l2_of_strip)) continue;
+    if (tube.is_closed && !(are_even(tube.girth) && is_strip(tube))) continue;
     tubes.push_back(std::move(tube));
   }
   // A torus is a tube both ways.
-  std::stable_sort(tubes.begin(), tubes.end(), [](const Tube& a, const Tube& b) {
-    return a.is_closed && b.is_closed ? a.unevenness() < b.unevenness() : a.area > b.area;
-  });
+  const auto rank = [](const Tube& tube) {
+    return std::pair(!tube.is_closed, tube.is_closed ? tube.unevenness() : -tube.area);
+  };
+  std::stable_sort(tubes.begin(), tubes.end(), [&](const Tube& a, const Tube& b) { return rank(a) < rank(b); });
   Array<char> is_taken(quads_.size(), 0);
   Array<Tube> out;
   for (Tube& tube : tubes) {
@@ -278,7 +287,7 @@ bool is_handle(const HalfedgeMesh& mesh, const TubeSearch& search, const Tube& t
   const Array<Quad>& quads = search.quads();
   const double mean = (tube.girth[0] + tube.girth[1]) / 2;
   if (mesh.genus == 0 || tube.is_closed || tube.area < least_handle * mean * mean) return false;
-  if (!(search.stretch_as_rectangle(tube) <= most_l2_of_strip)) return false;
+  if (!search.is_strip(tube)) return false;
   PerTriangle<char> is_in_tube(mesh.triangle_count(), 0);
   for (const Index q : tube.quads) {
     for (const int side : {0, 2}) is_in_tube[element(quads[q].side, side) / 3] = 1;
@@ -316,6 +325,8 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
   double area = 0;
   for (const Tube& tube : tubes) area += tube.area;
   const bool consists_of_tubes = area >= least_share * surface.geometry.total_area;
+  // Each handle takes as long as the mesh is large.
+  if (!consists_of_tubes && mesh.triangle_count() >= least_large) return out;
   for (const Tube& tube : tubes) {
     if (!consists_of_tubes && !is_handle(mesh, search, tube)) continue;
     for (const Array<Index>& end : tube.end) {
@@ -333,7 +344,7 @@ ComponentTubes find_component_tubes(const MetricMesh& surface) {
 TubeShape tube_shape(const MetricMesh& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
   const auto shape_of = [](const std::array<double, 2>& girths) {
-    return girths[1] <= most_even * girths[0] ? TubeShape::even : TubeShape::tapering;
+    return are_even(girths) ? TubeShape::even : TubeShape::tapering;
   };
   if (const auto girths = girths_of_opened_tube(surface)) return shape_of(*girths);
   if (!mesh.is_ring() && !mesh.is_torus()) return TubeShape::none;

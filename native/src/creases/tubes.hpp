@@ -7,9 +7,6 @@
 
 namespace lsgp {
 
-// Of what need not be a strip, as much as placed cones may leave.
-constexpr double most_l2_of_strip = 1.05;
-
 // The tubes of a component that consists of them for the most part, or else its handles.
 struct ComponentTubes {
   PerHalfedge<char> is_end;  // on both halfedges of the edges at which they end
@@ -20,9 +17,10 @@ struct ComponentTubes {
 //
 // Quads are as of find_quads. A ring of them is closed across opposite sides, and a tube is a stack of rings joined
 // along whole rims. Where the cone that a ring lies on develops into more than half a disk, its inner end is closed
-// better than unrolled: tubes end there. A disk that is a tube, open along a line, has no further ends, and neither has
-// a torus, which is a tube only if it bends so little that a strip is hardly stretched. A handle is a tube of which the
-// same is true, whose ends the rest of the surface joins, and which is at least as long as its girth.
+// better than unrolled: tubes end there, and where a ring's rim is folded onto itself. A disk that is a tube, open
+// along a line, has no further ends, and neither has a torus, which is a tube only if its rings are of about the same
+// girth and it bends so little that a strip is hardly stretched. A handle is a tube that bends as little, whose ends
+// the rest of the surface joins, and which is at least as long as its girth; large meshes are not searched for handles.
 ComponentTubes find_component_tubes(const MetricMesh& surface);
 
 // What a component is, from one boundary to the other, or open along a line between them: a tube of about the same

@@ -425,9 +425,11 @@ Compactor::Division Compactor::divided_evenly(const Array<Index>& faces, const A
   Division out;
   for (const double share : {narrow, wide}) {
     Division made = divided_at(lines, std::max(share * length, row), faces, island);
-    if (out.pieces.empty() || made.length < clearly_shorter * out.length) out = std::move(made);
+    const bool is_better =
+        made.pieces.size() == out.pieces.size() ? made.length < clearly_shorter * out.length : made.worth > out.worth;
+    if (made.worth > 0 && (out.pieces.empty() || is_better)) out = std::move(made);
   }
-  return out.worth > 0 ? std::move(out) : Division();
+  return out;
 }
 
 Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {

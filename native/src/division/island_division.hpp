@@ -115,7 +115,7 @@ class DivisionSearch {
   // also smaller pieces may be cut off: a thin tail keeps everything else small.
   bool may_be_cut_off(const Piece& piece, const WholeIsland& island) const;
 
-  // Into how many equal pieces a strip of this length is divided so that none of them is long.
+  // Into how many equal pieces a strip of this length is divided: as few as leave none of them long, and at most 8.
   Index pieces_of_strip(double length) const;
 
   // The least saving that can be worth a division.

@@ -7,7 +7,6 @@
 
 #include "base/array.hpp"
 #include "base/text.hpp"
-#include "lsgp/errors.hpp"
 #include "plane/aabb_tree.hpp"
 
 namespace lsgp {
@@ -26,6 +25,7 @@ constexpr double safe = 0.9;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 struct IslandExtent {
+  Index island = 0;
   double length = 0;  // the longer side of the island's box
   bool is_scaled = false;
 };
@@ -47,7 +47,7 @@ Array<IslandExtent> extents_of_moved(const CornerUv& corner_uv, const std::vecto
     const IslandLock lock = options.locks.empty() ? IslandLock{} : element(options.locks, i);
     const double length = std::min(std::max(boxes[i].right - boxes[i].left, boxes[i].top - boxes[i].bottom),
                                    std::numeric_limits<double>::max());
-    if (!lock.place && length > 0) out.push_back({length, options.fill && !lock.scale});
+    if (!lock.place && length > 0) out.push_back({i, length, options.fill && !lock.scale});
   }
   return out;
 }
@@ -73,27 +73,36 @@ void require_digits(const CornerUv& corner_uv, const std::vector<Index>& island,
   const double scale = side_of_area / (taken_by_islands * side_of_all(extents, true));
   for (IslandExtent& extent : extents) extent.length *= extent.is_scaled ? scale : 1;
   const double taken = taken_by_islands * std::hypot(side_of_all(extents, true), side_of_all(extents, false));
-  double most = unlimited;  // coordinates
-  for (const IslandExtent& extent : extents) {
+  const auto limit = [&](const IslandExtent& extent) {  // of the coordinates of one
     const double own = most_times * extent.length;
-    if (own >= room_for_gaps * taken) most = std::min(most, own);
-  }
+    return own >= room_for_gaps * taken ? own : unlimited;
+  };
+  double most = unlimited;
+  for (const IslandExtent& extent : extents) most = std::min(most, limit(extent));
+  const auto islands_before = [&](double coordinate) {
+    Array<Index> out;
+    for (const IslandExtent& extent : extents) {
+      if (limit(extent) < coordinate) out.push_back(extent.island);
+    }
+    return out;
+  };
   const double away = std::max(std::abs(area.left), std::abs(area.bottom));  // from the origin
   if (away > most / 2) {
-    throw Error(Code::wrong_parameter,
-                concat("The area begins at ", area.left, ", ", area.bottom,
-                       ", so far from the origin that numbers there are too far apart for the shapes of islands. Pass "
-                       "one that begins at numbers of at most ",
-                       rounded(safe * most / 2, 2), "."));
+    throw NoRoom{concat("The area begins at ", area.left, ", ", area.bottom,
+                        ", so far from the origin that numbers there are too far apart for the shapes of islands. Pass "
+                        "one that begins at numbers of at most ",
+                        rounded(safe * most / 2, 2), "."),
+                 islands_before(2 * away)};
   }
   if (options.fill) return;
   const double margins = 2 * std::ceil(std::sqrt(static_cast<double>(extents.size())));  // along a side
-  if (away + taken + margins * options.margin <= most) return;
-  throw Error(Code::wrong_parameter,
-              concat("The margin is ", options.margin,
-                     ", so large that numbers are too far apart for the shapes of islands that lie between such gaps. "
-                     "Pass one of at most ",
-                     rounded(safe * (most - away - taken) / margins, 2), "."));
+  const double farthest = away + taken + margins * options.margin;
+  if (farthest <= most) return;
+  throw NoRoom{concat("The margin is ", options.margin,
+                      ", so large that numbers are too far apart for the shapes of islands that lie between such gaps. "
+                      "Pass one of at most ",
+                      rounded(safe * (most - away - taken) / margins, 2), "."),
+               islands_before(farthest)};
 }
 
 }  // namespace lsgp

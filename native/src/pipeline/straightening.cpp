@@ -72,7 +72,7 @@ class SideSearch {
         order_(sort_by_cost(straight)),
         sides_(std::move(straight.sides)),
         straight_(std::move(straight)),
-        most_growth_for_marked_(kinds == SideKinds::of_strip ? most_growth_of_strip : 1.1),
+        most_growth_for_marked_(kinds == SideKinds::of_strip ? most_growth_of_strip : most_growth_of_features),
         most_l2_(largest_l2_straight(map.natural_l2)),
         may_overlap_(overlaps(task.surface, map)) {
     straight_.sides.clear();
@@ -107,7 +107,10 @@ class SideSearch {
   double marked_length() const { return straight_.marked_length(); }
 
  private:
-  // A straight strip is what the other maps of a tube are compared with, so that only what is no map any more is none.
+  // Of the L2 stretch, for marked features.
+  static constexpr double most_growth_of_features = 1.1;
+  // What a straight strip costs is weighed later, against other maps of its tube: here it may be whatever tubes can
+  // need. By the formula for bends (docs/how-to/hard-surfaces.md) it is 2 for one whose radius is 0.99999 of its bend's.
   static constexpr double most_growth_of_strip = 2;
 
   // Marked features that are straight already stay so, whatever they have cost.

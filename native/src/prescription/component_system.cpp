@@ -57,7 +57,7 @@ CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerL
     return out;
   };
   CutGraph usual = connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
-  const bool is_torus = surface_.mesh.is_torus();
+  const bool is_torus = surface_.mesh.is_torus() && mirroring_.empty();  // straight loops need not be symmetric
   const bool is_tube = is_torus || (surface_.mesh.is_ring() && usual.cuts.size() == 1);
   if (!interior_cones.empty() || !is_tube) return usual;
   std::optional<CutGraph> straight = is_torus ? cut_around(surface_) : cut_across(surface_);

@@ -101,6 +101,7 @@ Made best_in_time(const TimeLimit& limit, const Objective& objective, const MapO
   const Made& best = objective.best_so_far();
   if (!limit.has_caused(error) || !best) throw;
   tell_findings(*best, of_map.of_map);
+  tell_stretched_strips(*best);
   best->result.warnings.push_back(
       {Code::time_limit, "The time limit was reached: this is the best map made until then.", {}});
   return best;
@@ -152,8 +153,8 @@ Unwrapped unwrapped(const GivenForMap& from, const AutoUnwrapOptions& options, c
   const bool is_packed = options.pack && !is_pinned && !of_map.of_map.seamless;
   constexpr double mapping = 0.9;  // of the time, where islands are packed afterward
   const Progress of_maps = share_of(choosing, 0, is_packed ? mapping : 1);
-  if (options.creases && weights.strips > 0) {
-    ends.tubes = tubes_for(surface, given, ends.creases, of_map, pins, share_of(choosing, 0, 0));
+  if (options.creases && weights.strips > 0 && !is_pinned) {
+    ends.tubes = tubes_for(surface, given, ends.creases, of_map, share_of(choosing, 0, 0));
   }
   if (options.creases && !is_pinned) ends.outline = outline_for(surface, given, of_map, share_of(choosing, 0, 0));
   Objective objective(weights, {of_map.of_map.square_share});

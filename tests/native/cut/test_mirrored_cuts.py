@@ -304,3 +304,12 @@ def test_islands_that_mirror_themselves_are_divided_alike_on_both_sides(turn: fl
         assert result.island.max() > 0
         shares.append(mirrored_share(mesh, result.cut_edges))
     assert sum(share < 0.98 for share in shares) <= 1, shares
+
+
+@pytest.mark.parametrize(("around", "along"), [(18, 10), (24, 12), (30, 16)])
+def test_a_torus_without_cones_is_cut_alike_on_both_sides(around: int, along: int) -> None:
+    """Its plane is one of several: here either x or y is mirrored in it, as the cut along it is in z anyway."""
+    mesh = meshes.torus(around, along)
+    edges = lsgp.parameterize(surface(mesh), [], None, MIRRORED).cut_edges
+    turned = mesh._replace(positions=mesh.positions[:, [1, 0, 2]])
+    assert max(mirrored_share(either, edges) for either in (mesh, turned)) >= 1 - 1e-9

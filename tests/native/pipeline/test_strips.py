@@ -159,6 +159,19 @@ def test_coils_are_straight_strips_and_their_excess_is_named(preset: lsgp.Preset
     assert all(finding.code != "HIGH_DISTORTION" for finding in straight.warnings)
 
 
+@pytest.mark.parametrize(("taper", "is_straight"), [(0.95, True), (0.8, False)])
+def test_only_what_is_a_straight_strip_is_told_to_be_stretched_as_one(taper: float, is_straight: bool) -> None:
+    """A bent horn is stretched about as much, but as a sector."""
+    around, along = 12, 40
+    mesh = pipe(around, along, 4.0, False)
+    rings = mesh.positions.reshape(along + 1, around, 3)
+    middle = rings.mean(axis=1, keepdims=True)
+    scaled = middle + (rings - middle) * np.linspace(1, taper, along + 1)[:, None, None]
+    result = lsgp.auto_unwrap(of_quads(mesh._replace(positions=scaled.reshape(-1, 3)), around * along))
+    assert not len(result.cones) and result.distortion.l2_stretch > 1.05
+    assert any(finding.code == "HIGH_DISTORTION" for finding in result.warnings) == is_straight
+
+
 def knot(around: int, along: int, thickness: float) -> lsgp.Surface:
     """A trefoil on a torus, with a row of quads beside that: rings are all of about the same girth."""
     s = 2 * np.pi * np.arange(along) / along
@@ -189,13 +202,54 @@ def test_a_tube_that_is_closed_on_itself_is_cut_along_one_row_and_one_ring(
     assert off_any_rectangle(result, np.arange(len(mesh.triangles))) < 1e-5
 
 
-def with_bar(gap: bool) -> lsgp.Surface:
-    """A block of triangles, and over it a bar of quads, 6 cubes between its corners; perhaps with a gap."""
-    filled = np.zeros((8, 3, 6), bool)
+@pytest.mark.parametrize("minor", [0.35, 0.5, 0.7, 0.75, 0.8, 1.0, 1.4])
+def test_a_torus_is_a_tube_where_its_strip_is_hardly_stretched(minor: float) -> None:
+    ratio = minor / 2
+    mesh = surface(meshes.torus(60, round(60 * ratio), 2.0, minor))  # of about square quads
+    is_slender = (1 + 1.5 * ratio**2) ** 0.25 <= 1.05
+    assert len(lsgp.find_tubes(mesh).triangles) == (len(mesh.triangles) if is_slender else 0)
+
+
+@pytest.mark.parametrize("change", [0.0, 0.04, 0.06])
+def test_a_torus_is_a_tube_where_its_girth_is_even(change: float) -> None:
+    mesh = meshes.torus(60, 18, 2.0, 0.5)
+    angle = np.arctan2(mesh.positions[:, 1], mesh.positions[:, 0])
+    middle = 2 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
+    scaled = middle + (mesh.positions - middle) * (1 + change * np.cos(angle))[:, None]
+    is_even = 1 + change <= 1.1 * (1 - change)
+    tubes = lsgp.find_tubes(surface(mesh._replace(positions=scaled)))
+    assert len(tubes.triangles) == (len(mesh.triangles) if is_even else 0)
+
+
+@pytest.mark.parametrize("rings", [3, 8])
+def test_a_blade_ends_where_its_rings_are_folded_onto_themselves(rings: int) -> None:
+    """Both sides of a row of quads: a ring has two quads, which meet at both ends of the blade."""
+    low = 2 * np.arange(rings)[:, None]
+
+    def of_each_ring(*corners: int) -> np.ndarray:
+        return low + np.array(corners)
+
+    front = np.concatenate([of_each_ring(0, 1, 3), of_each_ring(0, 3, 2)])
+    back = np.concatenate([of_each_ring(1, 0, 2), of_each_ring(1, 2, 3)])
+    step = np.arange(rings + 1)
+    places = np.stack([np.stack([side + 0 * step, 0.01 * side * step, 0.3 * step], 1) for side in (0, 0.5)], 1)
+    mesh = meshes.make(places.reshape(-1, 3), np.concatenate([front, back]).tolist())
+    hidden = pairs(np.concatenate([of_each_ring(0, 3), of_each_ring(1, 2)]))
+    quads = surface(
+        mesh, edges=np.array([e for e in meshes.edges_of(mesh.triangles).tolist() if tuple(e) not in hidden])
+    )
+    tubes = lsgp.find_tubes(quads)
+    assert len(tubes.triangles) == len(mesh.triangles)
+    assert pairs(tubes.borders) == {(0, 1), (2 * rings, 2 * rings + 1)}
+
+
+def with_bars(count: int, gap: bool = False) -> lsgp.Surface:
+    """A block of triangles, and over it bars of quads, 6 cubes between their corners; perhaps with gaps."""
+    filled = np.zeros((8, 4 * count - 1, 6), bool)
     filled[:, :, :3] = True
-    filled[[0, -1], 1, 3:5] = True
-    filled[:, 1, 5] = True
-    filled[4, 1, 5] = not gap
+    filled[[0, -1], 1::4, 3:5] = True
+    filled[:, 1::4, 5] = True
+    filled[4, 1::4, 5] = not gap
     mesh = meshes.voxels(filled)
     height = mesh.positions[:, 2] - mesh.positions[:, 2].min()
     ends = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], 2)
@@ -208,14 +262,29 @@ def with_bar(gap: bool) -> lsgp.Surface:
 
 
 def test_handles_are_tubes_of_bodies_that_are_none() -> None:
-    mesh = with_bar(gap=False)
+    mesh = with_bars(1)
     tubes = lsgp.find_tubes(mesh)
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     at = (mesh.positions[mesh.triangles].mean(axis=1) - low) / (high - low) * [8, 3, 6]
     in_bar = (at[:, 2] > 5 - 1e-9) & (at[:, 0] > 1 + 1e-9) & (at[:, 0] < 7 - 1e-9)
     np.testing.assert_array_equal(tubes.triangles, np.flatnonzero(in_bar))
     assert len(tubes.borders) == 2 * 4
-    assert not len(lsgp.find_tubes(with_bar(gap=True)).triangles)
+    assert not len(lsgp.find_tubes(with_bars(1, gap=True)).triangles)
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_every_handle_is_worth_its_own_island(count: int, preset: lsgp.Preset) -> None:
+    """Together they are not weighed against a single one."""
+    mesh = with_bars(count)
+    corners = mesh.positions[mesh.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    share = area[lsgp.find_tubes(mesh).triangles].sum() / area.sum() / count
+    weights = lsgp.preset_weights(preset)
+    worth = (weights.islands + 0.15) / share  # an island, and the error of estimates
+    for factor in (0.9, 1.1):
+        result = lsgp.auto_unwrap(mesh, preset=preset, weights=replace(weights, strips=factor * worth))
+        assert any(choice.name == "tubes as strips" for choice in result.choices) == (factor > 1)
 
 
 @pytest.mark.parametrize("ratio", [20, 40])
