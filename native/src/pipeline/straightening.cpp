@@ -110,7 +110,8 @@ class SideSearch {
   // Of the L2 stretch, for marked features.
   static constexpr double most_growth_of_features = 1.1;
   // What a straight strip costs is weighed later, against other maps of its tube: here it may be whatever tubes can
-  // need. By the formula for bends (docs/how-to/hard-surfaces.md) it is 2 for one whose radius is 0.99999 of its bend's.
+  // need. By the formula for bends (docs/how-to/hard-surfaces.md) it is 2 for one whose radius is 0.99999 of its
+  // bend's.
   static constexpr double most_growth_of_strip = 2;
 
   // Marked features that are straight already stay so, whatever they have cost.
