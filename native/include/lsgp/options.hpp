@@ -123,7 +123,7 @@ struct Options {
   // that costs noticeable stretch. In seamless layouts on squares, in any mode: those of components without cuts, and
   // creases of hard surfaces run along the lattice.
   bool straighten = false;
-  bool repair = true;        // of flipped triangles and angles off by a turn
+  bool repair = true;  // of flipped triangles and angles off by a turn
   // False: only of defects that few vertices around them can mend, which takes little time. Not an option of Python.
   bool hard_repairs = true;
   Overlaps overlaps = Overlaps::keep;

@@ -36,8 +36,8 @@ struct PlacementOptions {
   // Cones of a noisy surface, as a scan, are chosen on its shape: noise at the scale of triangles has no part in it.
   // Log scale, stretch and target are that shape's, while a map of the surface has the stretch of noise besides.
   bool without_noise = false;
-  // As in Options, of the maps with cones that are tried. False: nor are smaller and larger numbers of cones tried where
-  // these have defects or much stretch.
+  // As in Options, of the maps with cones that are tried. False: nor are smaller and larger numbers of cones tried
+  // where these have defects or much stretch.
   bool hard_repairs = true;
   int threads = 0;  // as in Options
 };
