@@ -55,8 +55,8 @@ FAMILIES = {
 }
 
 
-def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
-    """Of all cuts, in square roots of the surface's area."""
+def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> tuple[float, float]:
+    """Of all cuts, in square roots of the surface's area, and of as long ones that run anywhere."""
     given = surface(mesh, edges=meshes.edges_of(mesh.triangles))
     views = np.cbrt((lsgp.cut_costs(given, FRONT, creases=False) - UNSEEN) / (IN_FULL_SIGHT - UNSEEN))
     hidden = replace(given, cut_costs=lsgp.cut_costs(given, FRONT)) if is_hidden else given
@@ -66,32 +66,35 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
     length = np.linalg.norm(np.diff(given.positions[given.edges], axis=1), axis=2).ravel()
     corners = given.positions[given.triangles]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
-    return float((is_cut * length * views).sum() / np.sqrt(area))
+    anywhere = is_cut @ length * (length @ views) / length.sum()
+    return float(is_cut @ (length * views) / np.sqrt(area)), float(anywhere / np.sqrt(area))
 
 
 @pytest.mark.slow
 @pytest.mark.many_solves
 @pytest.mark.parametrize(
-    ("family", "preset", "share", "most"),
+    ("family", "preset", "of_shortest", "of_anywhere"),
     [
-        ("heads", "paint", 0.8, 3.0),
-        ("tubes", "paint", 0.95, 5.2),
-        ("blobs", "bake", 0.8, 2.2),
+        ("heads", "paint", 0.8, 2 / 3),
+        ("tubes", "paint", 0.95, 0.85),
+        ("blobs", "bake", 0.8, 2 / 3),
         *nightly(
-            ("heads", "bake", 0.8, 3.6),
-            ("beasts", "paint", 0.95, 4.8),
-            ("beasts", "bake", 0.95, 5.8),
-            ("tubes", "bake", 0.95, 6.2),
-            ("blobs", "paint", 0.8, 1.6),
+            ("heads", "bake", 0.8, 2 / 3),
+            ("beasts", "paint", 0.95, 2 / 3),
+            ("beasts", "bake", 0.95, 2 / 3),
+            ("tubes", "bake", 0.95, 0.85),
+            ("blobs", "paint", 0.8, 2 / 3),
         ),
     ],
 )
-def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, preset: str, share: float, most: float) -> None:
-    """Relative to the shortest cuts, and at all, with room for other divisions of single ones. Divisions that all weigh
-    length as much show more of baked heads and tubes; tubes that are left whole have short cuts anyway."""
-    hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
-    shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
-    assert hidden <= min(share * shortest, most)
+def test_whole_layouts_keep_their_cuts_out_of_sight(
+    family: str, preset: str, of_shortest: float, of_anywhere: float
+) -> None:
+    """Less of them is seen than of the shortest cuts, and than of edges anywhere, of which shortest cuts show from .75
+    to 1.2 times as much. Tubes that are left whole have short cuts, and go through what is seen."""
+    hidden, anywhere = np.sum([visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family]], axis=0)
+    shortest, _ = np.sum([visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family]], axis=0)
+    assert hidden <= min(of_shortest * shortest, of_anywhere * anywhere)
 
 
 @pytest.mark.many_solves
