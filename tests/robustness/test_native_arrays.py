@@ -107,6 +107,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[Any, ...]]] = {
     ),
     "parameterize": (_lsgp.parameterize, (ARRAYS, CONES, OPTIONS, PINS, None)),
     "preset": (_lsgp.preset, ("paint",)),
+    "least_inside": (_lsgp.least_inside, ()),
     "auto_unwrap": (_lsgp.auto_unwrap, (ARRAYS, CONES, EDGES[:3], CHOOSING, PINS, None)),
     "Solver": (_lsgp.Solver, (ARRAYS, None)),
     "Solver.complete_cones": (SOLVER.complete_cones, (CONES, 4, 1.05, MAP, None)),
