@@ -293,9 +293,7 @@ double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island,
   constexpr double most_gaps = 0.25;
   PackingOptions options;
   options.tiles = tiles;
-  const Index count = require_valid(corner_uv, island, options);
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Array<Box> boxes(count, Box{far, -far, far, -far});
+  require_valid(corner_uv, island, options);
   double area = 0, around = 0, islands = 0;
   for (std::size_t t = 0; t < island.size(); ++t) {
     if (island[t] < 0) continue;
@@ -303,11 +301,8 @@ double usual_margin(const CornerUv& corner_uv, const std::vector<Index>& island,
     const Eigen::Vector2d a = (corners.row(1) - corners.row(0)).transpose();
     const Eigen::Vector2d b = (corners.row(2) - corners.row(0)).transpose();
     area += std::abs(a[0] * b[1] - a[1] * b[0]) / 2;
-    const Eigen::Vector2d low = corners.colwise().minCoeff().transpose(),
-                          high = corners.colwise().maxCoeff().transpose();
-    boxes[island[t]] = lsgp::around(boxes[island[t]], {low[0], high[0], low[1], high[1]});
   }
-  for (const Box& box : boxes) {
+  for (const Box& box : boxes_of_islands(corner_uv, island)) {
     if (box.left > box.right) continue;
     around += box.right - box.left + box.top - box.bottom;
     ++islands;

@@ -47,7 +47,7 @@ MapOptions FeatureMaps::unstraightened() const {
 
 // Creases that run along the lattice take most of the time, and stretch the map.
 bool FeatureMaps::may_be_worth_it(const CompletedCones& cones, const Progress& progress) const {
-  if (!is_bounded()) return true;
+  if (!objective_.bounds_whole(parts_)) return true;
   if (objective_.is_beyond_bound(objective_.expected_through(parts_, cones, options_.of_map))) return false;
   const Made plain = attempt([&] { return maps_(cones, unstraightened(), share_of(progress, 0, 0)); });
   return plain && !is_outdone(*plain);

@@ -40,13 +40,11 @@ class FeatureMaps {
   Made without_creases(const Made& along, const Progress& progress) const;
 
  private:
-  // Of several components one may gain, whatever the cones cost on the others.
-  bool is_bounded() const { return parts_.count() == 1 && objective_.bounds_first(); }
   // Whether a map through these cones may be better than that of the bound.
   bool may_be_worth_it(const CompletedCones& cones, const Progress& progress) const;
   // Whether that is better than a map will be once its creases run along the lattice.
   bool is_outdone(const MadeMap& plain) const {
-    return is_bounded() && is_outdone_at_creases(plain.result, *objective_.rival());
+    return objective_.bounds_whole(parts_) && is_outdone_at_creases(plain.result, *objective_.rival());
   }
   // Through cones for features, the best other one, or one through cones of both, by component.
   // features: of the other one.

@@ -126,7 +126,7 @@ Made SymmetryChoice::through(const CompletedCones& cones, const Progress& progre
 }
 
 Made SymmetryChoice::through_first(const CompletedCones& cones, const Progress& progress) {
-  if (bounds_cones()) {
+  if (objective_.bounds_whole(surface_.parts)) {
     const Quality expected = objective_.expected_through(surface_.parts, cones, options_.of_map);
     if (objective_.is_beyond_bound(expected)) {
       beyond_ = expected;
@@ -142,7 +142,7 @@ CompletedCones SymmetryChoice::placed(Placing how, const Progress& progress) con
   completion.target = given_.target;
   completion.symmetric = how == Placing::symmetric;
   completion.without = given_.without;
-  if (bounds_cones()) completion.most = objective_.most_cones(surface_.parts);
+  if (objective_.bounds_whole(surface_.parts)) completion.most = objective_.most_cones(surface_.parts);
   return complete_cones(surface_.solver, given_.cones, completion, options_, share_of(progress, 0, placing));
 }
 

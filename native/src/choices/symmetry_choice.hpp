@@ -49,9 +49,6 @@ class SymmetryChoice {
   std::optional<double> expected(Kind kind) const;
   Made make(Kind kind, const Progress& progress);
   Made through(const CompletedCones& cones, const Progress& progress) const;
-  // Whether so many cones may be expected to cost more than another map that they need no map. Of several components
-  // some may be better off through theirs, whatever they cost on others.
-  bool bounds_cones() const { return surface_.parts.count() == 1 && objective_.bounds_first(); }
   // Null beyond the bound.
   Made through_first(const CompletedCones& cones, const Progress& progress);
   CompletedCones placed(Placing how, const Progress& progress) const;

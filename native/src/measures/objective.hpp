@@ -69,11 +69,14 @@ class Objective {
   // Whether the bound is one of first candidates as well.
   bool bounds_first() const { return rival_ && bounds_first_; }
 
+  // Whether they are bounded as wholes: of several components one may gain, whatever the cones cost on the others.
+  bool bounds_whole(const SurfaceParts& parts) const { return parts.count() == 1 && bounds_first(); }
+
   // The map of the bound.
   const std::optional<Quality>& rival() const { return rival_; }
 
   // Whether a map with any defect costs more than that.
-  bool bounds_defects() const { return bounds_first() && rival_->left_out == 0 && rival_->defects == 0; }
+  bool bounds_defects() const { return bounds_first() && bound() < infinity; }
 
   // Adds a map to the trace.
   void note(const std::string& name, const Quality& quality, double estimate, bool is_best);

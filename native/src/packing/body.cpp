@@ -171,6 +171,20 @@ Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& islan
   return bodies;
 }
 
+Array<Box> boxes_of_islands(const CornerUv& corner_uv, const std::vector<Index>& island) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Index count = 0;
+  for (const Index i : island) count = std::max(count, i + 1);
+  Array<Box> out(count, Box{far, -far, far, -far});
+  for (std::size_t t = 0; t < island.size(); ++t) {
+    if (island[t] < 0) continue;
+    const auto corners = corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t));
+    const Eigen::RowVector2d low = corners.colwise().minCoeff(), high = corners.colwise().maxCoeff();
+    out[island[t]] = around(out[island[t]], {low[0], high[0], low[1], high[1]});
+  }
+  return out;
+}
+
 UvRectangle inside_margins(const PackingOptions& options, bool has_area) {
   const double snap = options.snap;
   const double margin = snap > 0 ? std::ceil(options.margin / snap) * snap : options.margin;

@@ -46,6 +46,9 @@ struct Body {
 Array<Body> bodies_of(const CornerUv& corner_uv, const std::vector<Index>& island, const PackingOptions& options,
                       double length, double quantum);
 
+// The boxes around islands, (islands); turned inside out where none of the triangles is of one.
+Array<Box> boxes_of_islands(const CornerUv& corner_uv, const std::vector<Index>& island);
+
 // The area without the margin at its border; if islands have none to fill, a square of side 1 beyond the margin.
 UvRectangle inside_margins(const PackingOptions& options, bool has_area);
 

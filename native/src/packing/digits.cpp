@@ -7,7 +7,7 @@
 
 #include "base/array.hpp"
 #include "base/text.hpp"
-#include "plane/aabb_tree.hpp"
+#include "packing/body.hpp"
 
 namespace lsgp {
 
@@ -33,17 +33,9 @@ struct IslandExtent {
 // Of the islands that are moved and are no points.
 Array<IslandExtent> extents_of_moved(const CornerUv& corner_uv, const std::vector<Index>& island,
                                      const PackingOptions& options) {
-  Index island_count = 0;
-  for (const Index i : island) island_count = std::max(island_count, i + 1);
-  Array<Box> boxes(island_count, Box{unlimited, -unlimited, unlimited, -unlimited});
-  for (std::size_t t = 0; t < island.size(); ++t) {
-    if (island[t] < 0) continue;
-    const auto corners = corner_uv.middleRows<3>(3 * static_cast<Eigen::Index>(t));
-    const Eigen::RowVector2d low = corners.colwise().minCoeff(), high = corners.colwise().maxCoeff();
-    boxes[island[t]] = around(boxes[island[t]], {low[0], high[0], low[1], high[1]});
-  }
+  const Array<Box> boxes = boxes_of_islands(corner_uv, island);
   Array<IslandExtent> out;
-  for (Index i = 0; i < island_count; ++i) {
+  for (Index i = 0; i < ssize(boxes); ++i) {
     const IslandLock lock = options.locks.empty() ? IslandLock{} : element(options.locks, i);
     const double length = std::min(std::max(boxes[i].right - boxes[i].left, boxes[i].top - boxes[i].bottom),
                                    std::numeric_limits<double>::max());
